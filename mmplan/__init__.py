@@ -1,0 +1,1 @@
+"""Grasps, base placements and verified motions for mobile manipulators."""
