@@ -38,11 +38,11 @@ $(VENV)/.installed: pyproject.toml
 			"one: make PYTHON=/path/to/python $(MAKECMDGOALS)" >&2; exit 1; }
 	@echo "setting up $(VENV) with $(PYTHON); this takes a minute"
 	@$(PYTHON) -m venv $(VENV)
-	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --editable .
+	@$(VENV)/bin/python -m pip install -qq --disable-pip-version-check --editable .
 	@touch $@
 
 $(VENV)/.installed-%: $(VENV)/.installed
 	@echo "adding what '$*' needs to $(VENV)"
-	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check \
+	@$(VENV)/bin/python -m pip install -qq --disable-pip-version-check \
 		--editable '.[$*]'
 	@touch $@
