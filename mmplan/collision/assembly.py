@@ -1,0 +1,125 @@
+"""One Pinocchio geometry model of robot, obstacles and objects, with its pairs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+
+from mmplan.collision.scenery import Scenery
+from mmplan.collision.solids import Solid
+from mmplan.robot import Robot
+from mmplan.shapes import Array
+
+
+class Body(NamedTuple):
+    """One convex body of a geometry model."""
+
+    owner: str  # the link, obstacle (or fixture/link) or object it belongs to
+    kind: str  # "base", "arm", "finger", "ground", "obstacle", "standing", "attached"
+    joint: int  # the joint that moves it, 0 for none
+
+
+class TouchRules(NamedTuple):
+    """Who may touch whom.
+
+    `fingers` are the objects that the finger links may touch; `supports` maps
+    (object, obstacle) to the depth (m) down to which the one may press into the other.
+    """
+
+    fingers: frozenset[str] = frozenset()
+    supports: Mapping[tuple[str, str], float] = {}
+
+
+class Assembly(NamedTuple):
+    """The geometry model with what is known of its bodies and pairs."""
+
+    geometry: pin.GeometryModel
+    bodies: tuple[Body, ...]
+    pairs: npt.NDArray[np.int64]  # (p, 2), indices into bodies
+    allowed_depth: Array  # (p,), m
+
+
+def assemble(
+    robot: Robot,
+    scenery: Scenery,
+    standing: Mapping[str, Array],
+    attached: Mapping[str, Array],
+    touch: TouchRules,
+) -> Assembly:
+    """Put the world together; see `CollisionWorld` for which pairs are checked."""
+    geometry = robot.geometry.clone()
+    bodies = [
+        Body(robot.link_of(g), robot.kind_of(g), int(g.parentJoint))
+        for g in geometry.geometryObjects
+    ]
+    for solid in scenery.obstacles:
+        kind = "ground" if scenery.is_ground(solid.owner) else "obstacle"
+        _add(geometry, bodies, solid, kind, 0, np.eye(4))
+    for name, T_world_object in standing.items():
+        for solid in scenery.objects[name]:
+            _add(geometry, bodies, solid, "standing", 0, T_world_object)
+    for name, T_tool_object in attached.items():
+        T_joint_object = robot.T_joint_tool @ T_tool_object
+        for solid in scenery.objects[name]:
+            _add(geometry, bodies, solid, "attached", robot.tool_joint, T_joint_object)
+    pairs = _own_pairs(robot) + _scene_pairs(bodies, touch)
+    _set_pairs(geometry, pairs)
+    depth = [_allowed_depth(bodies[i], bodies[j], touch) for i, j in pairs]
+    return Assembly(
+        geometry, tuple(bodies), np.array(pairs, dtype=np.int64), np.array(depth)
+    )
+
+
+def _add(
+    geometry: pin.GeometryModel,
+    bodies: list[Body],
+    solid: Solid,
+    kind: str,
+    joint: int,
+    T_joint_owner: Array,
+) -> None:
+    placement = pin.SE3(T_joint_owner @ solid.placement)
+    name = f"{solid.owner}#{len(bodies)}"
+    geometry.addGeometryObject(
+        pin.GeometryObject(name, joint, placement, solid.geometry)
+    )
+    bodies.append(Body(solid.owner, kind, joint))
+
+
+def _own_pairs(robot: Robot) -> list[tuple[int, int]]:
+    return [(int(p.first), int(p.second)) for p in robot.geometry.collisionPairs]
+
+
+def _scene_pairs(bodies: list[Body], touch: TouchRules) -> list[tuple[int, int]]:
+    """Pairs of the moving bodies with the scene's, and of carried with the robot's."""
+    moving = ("base", "arm", "finger", "attached")
+    return [
+        (i, j)
+        for j, scene in enumerate(bodies)
+        if scene.kind not in moving[:3]
+        for i, mover in enumerate(bodies[:j])
+        if mover.kind in moving or scene.kind == "attached"
+        if mover.joint != scene.joint and not _may_touch(mover, scene, touch)
+    ]
+
+
+def _may_touch(mover: Body, scene: Body, touch: TouchRules) -> bool:
+    """Whether a pair is left out: base and ground, fingers and what they hold."""
+    if mover.kind == "base":
+        return scene.kind == "ground"
+    return mover.kind == "finger" and scene.owner in touch.fingers
+
+
+def _allowed_depth(a: Body, b: Body, touch: TouchRules) -> float:
+    depths = touch.supports
+    return depths.get((a.owner, b.owner), depths.get((b.owner, a.owner), 0.0))
+
+
+def _set_pairs(geometry: pin.GeometryModel, pairs: list[tuple[int, int]]) -> None:
+    geometry.removeAllCollisionPairs()
+    for i, j in pairs:
+        geometry.addCollisionPair(pin.CollisionPair(i, j))

@@ -1,0 +1,41 @@
+"""The solids of everything in a scene but the robot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from mmplan.collision.solids import Solid, geometries, solids_of_obstacle
+from mmplan.problem import Object, Problem
+
+
+@dataclass(frozen=True, eq=False)
+class Scenery:
+    """Obstacles in the world's frame, objects in their own; built once for a problem.
+
+    `grounds` names the obstacles that the base drives on.
+    """
+
+    obstacles: tuple[Solid, ...]
+    grounds: frozenset[str]
+    objects: Mapping[str, tuple[Solid, ...]]
+
+    @classmethod
+    def of_problem(cls, problem: Problem) -> Scenery:
+        """The solids of the problem's obstacles and objects."""
+        solids = [s for o in problem.obstacles for s in solids_of_obstacle(o)]
+        return cls(
+            obstacles=tuple(solids),
+            grounds=frozenset(o.name for o in problem.obstacles if o.ground),
+            objects={o.name: _solids_of_object(o) for o in problem.objects},
+        )
+
+    def is_ground(self, owner: str) -> bool:
+        """Whether the base drives on this obstacle (or fixture's link)."""
+        return owner.partition("/")[0] in self.grounds
+
+
+def _solids_of_object(item: Object) -> tuple[Solid, ...]:
+    return tuple(Solid(item.name, g, np.eye(4)) for g in geometries(item.shape))

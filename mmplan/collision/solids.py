@@ -1,0 +1,133 @@
+"""From the shapes of a problem to coal's convex geometries, all of them solids."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import singledispatch
+from pathlib import Path
+
+import coal
+import numpy as np
+import pinocchio as pin
+
+from mmplan.collision import meshes, revolve
+from mmplan.exceptions import InputError
+from mmplan.problem import Obstacle
+from mmplan.shapes import (
+    Array,
+    Box,
+    Capsule,
+    Cone,
+    Cylinder,
+    Fixture,
+    Mesh,
+    Revolve,
+    Shape,
+    Sphere,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """One convex solid. `owner` is the name by which reports speak of it."""
+
+    owner: str
+    geometry: coal.CollisionGeometry
+    placement: Array  # (4, 4), in the frame of what it belongs to
+
+
+def solids_of_obstacle(obstacle: Obstacle) -> list[Solid]:
+    """The solids of an obstacle, placed in the world."""
+    T = obstacle.T_world_obstacle
+    if isinstance(obstacle.shape, Fixture):
+        return [
+            Solid(f"{obstacle.name}/{link}", geometry, T @ placement)
+            for link, geometry, placement in _fixture_bodies(obstacle.shape)
+        ]
+    return [
+        Solid(obstacle.name, geometry, T) for geometry in geometries(obstacle.shape)
+    ]
+
+
+@singledispatch
+def geometries(shape: Shape) -> list[coal.CollisionGeometry]:
+    """The convex geometries that fill a shape, in the shape's frame."""
+    raise TypeError(f"no solid for a shape of type {type(shape).__name__}")
+
+
+@geometries.register
+def _(shape: Box) -> list[coal.CollisionGeometry]:
+    return [coal.Box(*shape.size)]
+
+
+@geometries.register
+def _(shape: Sphere) -> list[coal.CollisionGeometry]:
+    return [coal.Sphere(shape.radius)]
+
+
+@geometries.register
+def _(shape: Cylinder) -> list[coal.CollisionGeometry]:
+    return [coal.Cylinder(shape.radius, shape.length)]
+
+
+@geometries.register
+def _(shape: Capsule) -> list[coal.CollisionGeometry]:
+    return [coal.Capsule(shape.radius, shape.length)]
+
+
+@geometries.register
+def _(shape: Cone) -> list[coal.CollisionGeometry]:
+    return [coal.Cone(shape.radius, shape.length)]
+
+
+@geometries.register
+def _(shape: Revolve) -> list[coal.CollisionGeometry]:
+    return [meshes.hull(piece) for piece in revolve.convex_pieces(shape.profile)]
+
+
+@geometries.register
+def _(shape: Mesh) -> list[coal.CollisionGeometry]:
+    return [meshes.hull(piece) for piece in meshes.convex_pieces(shape)]
+
+
+def _fixture_bodies(
+    fixture: Fixture,
+) -> list[tuple[str, coal.CollisionGeometry, Array]]:
+    """Link name, geometry and pose in the fixture's frame, at its configuration."""
+    try:
+        model = pin.buildModelFromUrdf(str(fixture.path))
+        geometry = pin.buildGeomFromUrdf(
+            model, str(fixture.path), pin.GeometryType.COLLISION, str(fixture.path.parent)
+        )
+    except (RuntimeError, ValueError) as error:
+        raise InputError(f"{fixture.path}: this URDF cannot be read: {error}") from error
+    q = _fixture_configuration(model, fixture)
+    data, geometry_data = model.createData(), geometry.createData()
+    pin.updateGeometryPlacements(model, data, geometry, geometry_data, q)
+    return [
+        (model.frames[body.parentFrame].name, solid, T.homogeneous)
+        for body, T in zip(geometry.geometryObjects, geometry_data.oMg, strict=True)
+        for solid in _solids_of_body(body)
+    ]
+
+
+def _fixture_configuration(model: pin.Model, fixture: Fixture) -> Array:
+    q: Array = np.clip(
+        pin.neutral(model), model.lowerPositionLimit, model.upperPositionLimit
+    )
+    for name, value in fixture.configuration:
+        if not model.existJointName(name):
+            known = ", ".join(list(model.names)[1:]) or "none"
+            raise InputError(
+                f"{fixture.path}: no joint '{name}'; joints of this fixture: {known}"
+            )
+        q[model.joints[model.getJointId(name)].idx_q] = value
+    return q
+
+
+def _solids_of_body(body: pin.GeometryObject) -> list[coal.CollisionGeometry]:
+    """The body's geometry if it is a solid already, else the pieces of its mesh."""
+    if isinstance(body.geometry, coal.BVHModelBase):
+        x, y, z = (float(s) for s in body.meshScale)
+        return geometries(Mesh(Path(body.meshPath), (x, y, z)))
+    return [body.geometry]

@@ -1,0 +1,164 @@
+"""The collision world: a robot among obstacles and objects, and what may touch what."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+
+from mmplan.collision.assembly import Assembly, Body, TouchRules, assemble
+from mmplan.collision.checker import Checker
+from mmplan.collision.scenery import Scenery
+from mmplan.problem import Problem
+from mmplan.robot import Robot
+from mmplan.shapes import Array, read_only
+
+# How deep an object may press into what it stands on, m.
+TOUCH_TOLERANCE = 0.001
+# An object touches its support only this near the pose at which it rests, m.
+CONTACT_ZONE = 0.01
+
+
+class Contact(NamedTuple):
+    """Two things that overlap, by name, and how deep (m)."""
+
+    first: str
+    second: str
+    depth: float
+
+
+@dataclass(frozen=True, eq=False)
+class CollisionWorld:
+    """Robot, obstacles, and every object either standing or carried by the tool.
+
+    Worlds are values: `place`, `attach` and `permit_touch` return another world.
+    Every pair of bodies that do not move rigidly together must stay apart, except the
+    robot's own disabled pairs, base and ground, obstacles among themselves, the finger
+    links and an object that they may touch, and, down to a stated depth, an object
+    and what it stands on.
+    """
+
+    robot: Robot
+    scenery: Scenery
+    standing: Mapping[str, Array]  # object -> T_world_object
+    attached: Mapping[str, Array] = field(default_factory=dict)  # -> T_tool_object
+    touch: TouchRules = TouchRules()
+
+    @classmethod
+    def of_problem(cls, problem: Problem) -> CollisionWorld:
+        """The world before the first task."""
+        return cls(
+            robot=problem.robot,
+            scenery=Scenery.of_problem(problem),
+            standing={o.name: o.T_world_object for o in problem.objects},
+        )
+
+    def place(self, name: str, T_world_object: Array) -> CollisionWorld:
+        """The world with an object standing at a pose, its touch rules forgotten."""
+        attached = {k: v for k, v in self.attached.items() if k != name}
+        standing = {**self.standing, name: read_only(T_world_object)}
+        return replace(self.forbid_touch(name), attached=attached, standing=standing)
+
+    def attach(self, name: str, T_tool_object: Array) -> CollisionWorld:
+        """The world with an object carried by the tool and touched by the fingers."""
+        attached = {**self.attached, name: read_only(T_tool_object)}
+        standing = {k: v for k, v in self.standing.items() if k != name}
+        world = replace(self.forbid_touch(name), attached=attached, standing=standing)
+        return world.permit_touch(name, fingers=True)
+
+    def without(self, name: str) -> CollisionWorld:
+        """The world with an object taken out of it."""
+        standing = {k: v for k, v in self.standing.items() if k != name}
+        attached = {k: v for k, v in self.attached.items() if k != name}
+        return replace(self.forbid_touch(name), attached=attached, standing=standing)
+
+    def permit_touch(
+        self,
+        name: str,
+        *,
+        fingers: bool = False,
+        supports: Mapping[str, float] = MappingProxyType({}),
+    ) -> CollisionWorld:
+        """The world in which an object may touch the fingers and its supports.
+
+        `supports` maps names of obstacles to the depth (m) that is let pass.
+        """
+        touched = self.touch.fingers | ({name} if fingers else frozenset())
+        pressed = {(name, owner): depth for owner, depth in supports.items()}
+        rules = TouchRules(touched, {**self.touch.supports, **pressed})
+        return replace(self, touch=rules)
+
+    def forbid_touch(self, name: str) -> CollisionWorld:
+        """The world in which an object may touch nothing."""
+        supports = {k: v for k, v in self.touch.supports.items() if k[0] != name}
+        return replace(self, touch=TouchRules(self.touch.fingers - {name}, supports))
+
+    @property
+    def model(self) -> pin.Model:
+        """The robot's kinematic model."""
+        return self.robot.model
+
+    @property
+    def geometry(self) -> pin.GeometryModel:
+        """Every body of this world and the pairs that must stay apart."""
+        return self._assembly.geometry
+
+    @property
+    def bodies(self) -> tuple[Body, ...]:
+        """What each geometry of `geometry` belongs to, in its order."""
+        return self._assembly.bodies
+
+    @property
+    def pairs(self) -> npt.NDArray[np.int64]:
+        """The pairs that must stay apart, (p, 2) indices into `bodies`."""
+        return self._assembly.pairs
+
+    @property
+    def allowed_depth(self) -> Array:
+        """How deep (m) the two bodies of each pair may overlap, (p,)."""
+        return self._assembly.allowed_depth
+
+    def owner_of(self, index: int) -> str:
+        """The name of the link, obstacle or object that a geometry belongs to."""
+        return self.bodies[index].owner
+
+    def in_collision(self, q: Array) -> npt.NDArray[np.bool_]:
+        """Which of the configurations (n, nq) are in collision, (n,)."""
+        return self._checker.in_collision(q)
+
+    def any_collision(self, q: Array) -> bool:
+        """Whether any of the configurations (n, nq) is in collision."""
+        return self._checker.any_collision(q)
+
+    def contacts(self, q: Array) -> tuple[Contact, ...]:
+        """What overlaps more than it may at one configuration (nq,), deepest first."""
+        depths: dict[tuple[str, str], float] = {}
+        for pair, depth in self._checker.overlaps(q):
+            first, second = (self.owner_of(i) for i in self.pairs[pair])
+            key = (first, second)
+            depths[key] = max(depth, depths.get(key, 0.0))
+        contacts = [Contact(*key, depth) for key, depth in depths.items()]
+        return tuple(sorted(contacts, key=lambda c: (-c.depth, c.first, c.second)))
+
+    def object_pose(self, name: str, q: Array) -> Array:
+        """The pose T_world_object (4, 4) of an object when the robot is at q (nq,)."""
+        if name in self.standing:
+            return self.standing[name]
+        return self.robot.tool_pose(q) @ self.attached[name]
+
+    @cached_property
+    def _assembly(self) -> Assembly:
+        return assemble(
+            self.robot, self.scenery, self.standing, self.attached, self.touch
+        )
+
+    @cached_property
+    def _checker(self) -> Checker:
+        return Checker(self.model, self.geometry, self.allowed_depth)
+

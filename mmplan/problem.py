@@ -1,0 +1,127 @@
+"""What there is to solve: robot, obstacles, objects and tasks, as frozen values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mmplan.shapes import Array, Fixture, Shape
+
+if TYPE_CHECKING:
+    from mmplan.grasps import GraspFamily
+    from mmplan.robot import Robot
+
+
+@dataclass(frozen=True, eq=False)
+class Obstacle:
+    """A thing that stays where it is.
+
+    `ground` marks what the base drives on: it is no obstacle for the base's links.
+    """
+
+    name: str
+    shape: Shape | Fixture
+    T_world_obstacle: Array  # (4, 4)
+    ground: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Object:
+    """A thing that can be moved: its shape, where it stands, how it can be grasped.
+
+    `grasps` maps the names that the scene gives to grasp families.
+    """
+
+    name: str
+    shape: Shape
+    T_world_object: Array  # (4, 4), before the first task
+    grasps: dict[str, GraspFamily] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """Move one object to a pose.
+
+    The four lengths (m) are those of the straight tool motions: `approach` and
+    `retreat` along the tool's z, `lift` and `lower` along the world's z. None leaves
+    the length to the planner, which starts at its default and shortens where the
+    scene is too narrow; a number is kept to the letter, 0 leaves the motion out.
+    """
+
+    object: str
+    T_world_goal: Array  # (4, 4)
+    approach: float | None = None
+    lift: float | None = None
+    lower: float | None = None
+    retreat: float | None = None
+
+
+@dataclass(frozen=True)
+class ScoreSettings:
+    """Weights of the score's terms and the grasp quality below which it is 0.
+
+    The paper's grasps all close by force, so that it leaves grasp quality out; so do
+    the default weights.
+    """
+
+    grasp: float = 0.0
+    manipulability: float = 1.0
+    clutter: float = 1.0
+    min_quality: float = 0.0
+
+
+@dataclass(frozen=True)
+class OptimizerSettings:
+    """Which optimizer, its budget in score evaluations, and its populations.
+
+    The defaults are the paper's. `partners` is the paper's k.
+    """
+
+    name: str = "coevolution"
+    evaluations: int = 6940
+    bases: int = 84
+    grasps: int = 64
+    partners: int = 7
+    mutation: float = 0.2
+
+
+@dataclass(frozen=True)
+class PlannerSettings:
+    """Which planner and how far it may go before it gives up.
+
+    Planning is bounded by `iterations` (of the planner, for one path) and `candidates`
+    (how many distinct goals of the optimizer are tried), so that one seed gives one
+    plan; `time_limit` (s, for one path) is the safety net. `resolution` (m) is the
+    longest way that any point of the robot moves between two collision checks.
+    `shortcuts` is the number of attempts at shortening a path.
+    """
+
+    name: str = "RRTConnect"
+    iterations: int = 20_000
+    candidates: int = 20
+    time_limit: float = 10.0
+    resolution: float = 0.01
+    shortcuts: int = 100
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A robot, a scene and what is to be moved where."""
+
+    name: str
+    robot: Robot
+    q_start: Array  # (nq,)
+    base_bounds: Array  # (base joints, 2): where the base may go, m
+    obstacles: tuple[Obstacle, ...]
+    objects: tuple[Object, ...]
+    tasks: tuple[Task, ...]
+    score: ScoreSettings = ScoreSettings()
+    optimizer: OptimizerSettings = OptimizerSettings()
+    planner: PlannerSettings = PlannerSettings()
+    path: Path | None = None  # the scene file
+    fingerprint: str = ""  # SHA-256 over the scene and all files that it uses
+
+    def object(self, name: str) -> Object:
+        """The object of that name."""
+        return next(o for o in self.objects if o.name == name)
