@@ -1,0 +1,201 @@
+"""From the description of a robot to a robot that can be computed with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+
+import numpy as np
+import pinocchio as pin
+
+from mmplan.exceptions import InputError
+from mmplan.ik import InverseKinematics
+from mmplan.ik.solvers import SOLVERS
+from mmplan.robot import JointGroup, Robot, ScoreScales
+from mmplan.robot_file import RobotDescription
+from mmplan.shapes import Array, read_only
+
+
+def build_robot(description: RobotDescription) -> Robot:
+    """The robot of a description: its URDF read and everything checked against it.
+
+    Raises:
+        InputError: The URDF cannot be read, or does not have what robot.yaml names.
+    """
+    model, geometry = _models(description)
+    _raise_if_any(description, _faults(description, model))
+    base, arm, hand = (
+        _group(model, names, description)
+        for names in (
+            description.base_joints,
+            description.arm_joints,
+            description.hand_joints,
+        )
+    )
+    _raise_if_any(description, _value_faults(description, arm, hand))
+    tool_frame = int(model.getFrameId(description.tool, pin.FrameType.BODY))
+    _add_pairs(description, model, geometry)
+    return Robot(
+        name=description.name,
+        description=description.description,
+        model=model,
+        geometry=geometry,
+        base=base,
+        arm=arm,
+        hand=hand,
+        base_type=description.base_type,
+        base_radius=description.base_radius,
+        reach=description.reach,
+        tool_frame=tool_frame,
+        hand_open=read_only(description.hand_open),
+        hand_closed=read_only(description.hand_closed),
+        ik=_inverse_kinematics(description, model, tool_frame),
+        configurations={
+            name: read_only(q) for name, q in description.configurations.items()
+        },
+        score_scales=ScoreScales(
+            description.manipulability_scale, description.clutter_scale
+        ),
+        path=description.path,
+    )
+
+
+def _models(description: RobotDescription) -> tuple[pin.Model, pin.GeometryModel]:
+    """The kinematic model and the collision bodies, without any pairs yet."""
+    urdf = description.urdf
+    if not urdf.is_file():
+        raise InputError(f"{description.path}: urdf: no such file: {urdf}")
+    try:
+        model = pin.buildModelFromUrdf(str(urdf))
+        geometry = pin.buildGeomFromUrdf(
+            model,
+            str(urdf),
+            pin.GeometryType.COLLISION,
+            package_dirs=[str(folder) for folder in description.package_dirs],
+        )
+    except (RuntimeError, ValueError) as error:
+        raise InputError(f"{urdf}: this URDF cannot be read: {error}") from error
+    return model, geometry
+
+
+def _raise_if_any(description: RobotDescription, faults: Iterator[str]) -> None:
+    found = [f"{description.path}: {fault}" for fault in faults]
+    if found:
+        raise InputError(*found)
+
+
+def _faults(description: RobotDescription, model: pin.Model) -> Iterator[str]:
+    """What robot.yaml names and the model lacks, or the other way round."""
+    groups = {
+        "base": description.base_joints,
+        "arm": description.arm_joints,
+        "hand": description.hand_joints,
+        "acceleration": tuple(description.acceleration),
+    }
+    joints = list(model.names)[1:]
+    for group, names in groups.items():
+        for name in names:
+            if name not in joints:
+                yield f"{group}: no joint '{name}' among {', '.join(joints)}"
+    for name in joints:
+        yield from _joint_faults(description, model, name)
+    yield from _link_faults(description, model)
+    if description.ik_solver not in SOLVERS:
+        yield f"ik.solver: no '{description.ik_solver}' among {', '.join(SOLVERS)}"
+
+
+def _joint_faults(
+    description: RobotDescription, model: pin.Model, name: str
+) -> Iterator[str]:
+    grouped = description.base_joints + description.arm_joints + description.hand_joints
+    if grouped.count(name) != 1:
+        yield f"joint '{name}' must belong to exactly one of base, arm and hand"
+    if name not in description.acceleration:
+        yield f"acceleration: no value for joint '{name}'"
+    joint = model.joints[model.getJointId(name)]
+    if (joint.nq, joint.nv) == (1, 1):
+        yield from _limit_faults(model, name, joint.idx_q)
+    else:
+        yield f"joint '{name}' must have one degree of freedom and position limits"
+
+
+def _limit_faults(model: pin.Model, name: str, index: int) -> Iterator[str]:
+    lower = float(model.lowerPositionLimit[index])
+    upper = float(model.upperPositionLimit[index])
+    if not (np.isfinite([lower, upper]).all() and lower < upper):
+        yield f"joint '{name}' needs position limits in the URDF, lower below upper"
+    if not 0.0 < float(model.velocityLimit[index]) < np.inf:
+        yield f"joint '{name}' needs a velocity limit above 0 in the URDF"
+
+
+def _link_faults(description: RobotDescription, model: pin.Model) -> Iterator[str]:
+    links = [f.name for f in model.frames if f.type == pin.FrameType.BODY]
+    if description.tool not in links:
+        yield f"tool: no link '{description.tool}' among {', '.join(links)}"
+    for first, second, _ in description.disabled_pairs:
+        for link in (first, second):
+            if link not in links:
+                yield f"disabled_pairs: no link '{link}' among {', '.join(links)}"
+
+
+def _group(
+    model: pin.Model, names: Sequence[str], description: RobotDescription
+) -> JointGroup:
+    indices = np.array([model.joints[model.getJointId(n)].idx_q for n in names], int)
+    indices.setflags(write=False)
+    return JointGroup(
+        names=tuple(names),
+        indices=indices,
+        lower=read_only(model.lowerPositionLimit[indices]),
+        upper=read_only(model.upperPositionLimit[indices]),
+        velocity=read_only(model.velocityLimit[indices]),
+        acceleration=read_only([description.acceleration[n] for n in names]),
+    )
+
+
+def _value_faults(
+    description: RobotDescription, arm: JointGroup, hand: JointGroup
+) -> Iterator[str]:
+    """Named values of joints that are too few, too many, or beyond the limits."""
+    for name, q in description.configurations.items():
+        yield from _group_faults(f"configurations.{name}", np.array(q), arm)
+    yield from _group_faults("hand.open", np.array(description.hand_open), hand)
+    yield from _group_faults("hand.closed", np.array(description.hand_closed), hand)
+
+
+def _group_faults(what: str, q: Array, group: JointGroup) -> Iterator[str]:
+    if q.shape != (len(group),):
+        yield f"{what}: {len(group)} numbers are needed, one a joint; found {q.size}"
+        return
+    for name, value, lower, upper in zip(
+        group.names, q, group.lower, group.upper, strict=True
+    ):
+        if not lower <= value <= upper:
+            yield f"{what}: {value:g} of '{name}' is outside of {lower:g} .. {upper:g}"
+
+
+def _add_pairs(
+    description: RobotDescription, model: pin.Model, geometry: pin.GeometryModel
+) -> None:
+    """Add every pair of bodies that can move against each other and is not disabled."""
+    disabled = {frozenset(pair[:2]) for pair in description.disabled_pairs}
+    bodies = [
+        (model.frames[body.parentFrame].name, body.parentJoint)
+        for body in geometry.geometryObjects
+    ]
+    for i, j in combinations(range(len(bodies)), 2):
+        (link_i, joint_i), (link_j, joint_j) = bodies[i], bodies[j]
+        if joint_i != joint_j and frozenset((link_i, link_j)) not in disabled:
+            geometry.addCollisionPair(pin.CollisionPair(i, j))
+
+
+def _inverse_kinematics(
+    description: RobotDescription, model: pin.Model, tool_frame: int
+) -> InverseKinematics:
+    solver = SOLVERS[description.ik_solver]
+    try:
+        return solver(
+            model, description.arm_joints, tool_frame, description.ik_settings
+        )
+    except InputError as error:
+        raise InputError(f"{description.path}: {error}") from error
