@@ -1,11 +1,14 @@
 # make demo and make test each work as the first command on a fresh machine with
 # Python and make: they set up a virtual environment first, and again when
-# pyproject.toml changes. PYTHON= names another interpreter, VENV= another folder.
+# pyproject.toml changes. PYTHON= names another interpreter, VENV= another folder,
+# BENCHMARKS= the scripts that make bench runs.
 
 VENV ?= .venv
 SCENE ?= scenes/wineglass.yaml
 PYTHON ?= $(shell for python in python3 python3.13 python3.12 python3.11 python3.10; do \
 	$$python -c $(SUPPORTED) >/dev/null 2>&1 && echo $$python && break; done)
+BENCHMARKS ?= $(filter-out benchmarks/_% benchmarks/make_%,$(sort $(wildcard \
+	benchmarks/*.py)))
 SUPPORTED = 'import sys; sys.exit(not (3, 10) <= sys.version_info[:2] < (3, 14))'
 
 .PHONY: demo test lint format bench clean
@@ -26,6 +29,10 @@ lint: $(VENV)/.installed-dev
 format: $(VENV)/.installed-dev
 	$(VENV)/bin/ruff format
 	$(VENV)/bin/ruff check --fix
+
+bench: $(VENV)/.installed
+	@for script in $(BENCHMARKS); do \
+		echo "$$script" && $(VENV)/bin/python $$script || exit; done
 
 clean:
 	rm -rf build dist plan.json .hypothesis .import_linter_cache
