@@ -36,7 +36,7 @@ def tool_jacobians(model: pin.Model, frame: int, q: Array, columns: Array) -> Ar
 
 def _joint_motion(model: pin.Model, joint: int, values: Array) -> Array:
     """The transforms (n, 4, 4) of one joint at its values (n,)."""
-    linear, angular = np.split(_motion_axis(model, joint), 2)
+    linear, angular = np.split(motion_axis(model, joint), 2)
     T = np.zeros((len(values), 4, 4))
     T[:, 3, 3] = 1.0
     T[:, :3, 3] = values[:, None] * linear
@@ -46,7 +46,7 @@ def _joint_motion(model: pin.Model, joint: int, values: Array) -> Array:
     return T
 
 
-def _motion_axis(model: pin.Model, joint: int) -> Array:
+def motion_axis(model: pin.Model, joint: int) -> Array:
     """The twist (linear, angular) of a joint of one degree of freedom, (6,)."""
     data = model.joints[joint].createData()
     model.joints[joint].calc(data, np.zeros(model.nq))

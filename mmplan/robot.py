@@ -11,6 +11,7 @@ import numpy as np
 import pinocchio as pin
 
 from mmplan.ik import InverseKinematics
+from mmplan.kinematics import joint_placements
 from mmplan.shapes import Array, read_only
 
 
@@ -66,6 +67,20 @@ class Robot:
     def T_joint_tool(self) -> Array:
         """The pose (4, 4) of the tool frame in the frame of its joint."""
         return read_only(self.model.frames[self.tool_frame].placement.homogeneous)
+
+    @cached_property
+    def q_neutral(self) -> Array:
+        """A configuration (nq,): base at the origin, arm at 0, hand open."""
+        q: Array = pin.neutral(self.model)
+        q[self.hand.indices] = self.hand_open
+        return read_only(q)
+
+    def base_poses(self, q_base: Array) -> Array:
+        """The poses T_world_base (n, 4, 4) of the base's frame at (n, base joints)."""
+        q = np.tile(self.q_neutral, (len(q_base), 1))
+        q[:, self.base.indices] = q_base
+        joint = self.model.getJointId(self.base.names[-1])
+        return joint_placements(self.model, q)[:, joint]
 
     def tool_pose(self, q: Array) -> Array:
         """The pose T_world_tool (4, 4) at a configuration (nq,)."""

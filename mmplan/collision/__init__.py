@@ -1,9 +1,11 @@
 """The one door to coal: solids, the collision world, batched checks, distances."""
 
 from mmplan.collision.assembly import Assembly, Body, TouchRules
+from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
+from mmplan.collision.closing import Closings, HandCloser
+from mmplan.collision.distances import LinkDistances
 from mmplan.collision.scenery import Scenery
-from mmplan.collision.static_scene import StaticScene
-from mmplan.collision.supports import supports
+from mmplan.collision.supports import clearances, supports
 from mmplan.collision.world import (
     CONTACT_ZONE,
     TOUCH_TOLERANCE,
@@ -16,10 +18,16 @@ __all__ = [
     "TOUCH_TOLERANCE",
     "Assembly",
     "Body",
+    "Bounds",
+    "Closings",
     "CollisionWorld",
     "Contact",
+    "HandCloser",
+    "LinkDistances",
     "Scenery",
-    "StaticScene",
     "TouchRules",
+    "clearances",
+    "local_bounds",
+    "moved_bounds",
     "supports",
 ]

@@ -49,8 +49,12 @@ def assemble(
     standing: Mapping[str, Array],
     attached: Mapping[str, Array],
     touch: TouchRules,
+    ignored: tuple[str, ...] = (),
 ) -> Assembly:
-    """Put the world together; see `CollisionWorld` for which pairs are checked."""
+    """Put the world together; see `CollisionWorld` for which pairs are checked.
+
+    Pairs with a body whose kind is among `ignored` are left out.
+    """
     geometry = robot.geometry.clone()
     bodies = [
         Body(robot.link_of(g), robot.kind_of(g), int(g.parentJoint))
@@ -66,7 +70,11 @@ def assemble(
         T_joint_object = robot.T_joint_tool @ T_tool_object
         for solid in scenery.objects[name]:
             _add(geometry, bodies, solid, "attached", robot.tool_joint, T_joint_object)
-    pairs = _own_pairs(robot) + _scene_pairs(bodies, touch)
+    pairs = [
+        (i, j)
+        for i, j in _own_pairs(robot) + _scene_pairs(bodies, touch)
+        if bodies[i].kind not in ignored and bodies[j].kind not in ignored
+    ]
     _set_pairs(geometry, pairs)
     depth = [_allowed_depth(bodies[i], bodies[j], touch) for i, j in pairs]
     return Assembly(

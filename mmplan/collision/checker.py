@@ -33,7 +33,6 @@ class Checker:
         self._pool = _Pool(model, geometry, 1)
         for data in (self._geometry_data, self._pool.getGeometryData(0)):
             _configure(data, allowed_depth)
-        self._pool.update(self._geometry_data)
 
     def in_collision(self, q: Array) -> npt.NDArray[np.bool_]:
         """Which of the configurations (n, nq) are in collision, (n,)."""

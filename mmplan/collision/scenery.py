@@ -9,6 +9,7 @@ import numpy as np
 
 from mmplan.collision.solids import Solid, geometries, solids_of_obstacle
 from mmplan.problem import Object, Problem
+from mmplan.shapes import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +36,13 @@ class Scenery:
     def is_ground(self, owner: str) -> bool:
         """Whether the base drives on this obstacle (or fixture's link)."""
         return owner.partition("/")[0] in self.grounds
+
+    def centre_of_mass(self, name: str) -> Array:
+        """The centre of mass (3,) of an object of even density, in its own frame."""
+        solids = self.objects[name]
+        volumes = np.array([s.geometry.computeVolume() for s in solids])
+        centres = [s.geometry.computeCOM() for s in solids]
+        return np.average([np.ravel(c) for c in centres], axis=0, weights=volumes)
 
 
 def _solids_of_object(item: Object) -> tuple[Solid, ...]:

@@ -49,6 +49,7 @@ class CollisionWorld:
     standing: Mapping[str, Array]  # object -> T_world_object
     attached: Mapping[str, Array] = field(default_factory=dict)  # -> T_tool_object
     touch: TouchRules = TouchRules()
+    only_base: bool = False
 
     @classmethod
     def of_problem(cls, problem: Problem) -> CollisionWorld:
@@ -98,6 +99,10 @@ class CollisionWorld:
         """The world in which an object may touch nothing."""
         supports = {k: v for k, v in self.touch.supports.items() if k[0] != name}
         return replace(self, touch=TouchRules(self.touch.fingers - {name}, supports))
+
+    def base_alone(self) -> CollisionWorld:
+        """The world in which only the base's links are checked."""
+        return replace(self, only_base=True)
 
     @property
     def model(self) -> pin.Model:
@@ -154,8 +159,9 @@ class CollisionWorld:
 
     @cached_property
     def _assembly(self) -> Assembly:
+        ignored = ("arm", "finger", "attached") if self.only_base else ()
         return assemble(
-            self.robot, self.scenery, self.standing, self.attached, self.touch
+            self.robot, self.scenery, self.standing, self.attached, self.touch, ignored
         )
 
     @cached_property

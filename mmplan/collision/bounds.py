@@ -1,0 +1,40 @@
+"""Axis-aligned bounds of bodies, and how far apart bounds are at least."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import coal
+import numpy as np
+
+from mmplan.shapes import Array
+
+
+class Bounds(NamedTuple):
+    """Axis-aligned boxes as centres and half extents, each (..., 3), in metres."""
+
+    centre: Array
+    half: Array
+
+    def gap(self, other: Bounds) -> Array:
+        """A lower bound on the distance between what the boxes enclose, broadcast."""
+        apart = np.abs(self.centre - other.centre)
+        apart -= self.half + other.half
+        np.maximum(apart, 0.0, out=apart)
+        gap: Array = np.sqrt(np.einsum("...i,...i->...", apart, apart))
+        return gap
+
+
+def local_bounds(geometry: coal.CollisionGeometry) -> Bounds:
+    """The bounds of a geometry in its own frame."""
+    geometry.computeLocalAABB()
+    box = geometry.aabb_local
+    low, high = np.asarray(box.min_).ravel(), np.asarray(box.max_).ravel()
+    return Bounds((low + high) / 2, (high - low) / 2)
+
+
+def moved_bounds(local: Bounds, T: Array) -> Bounds:
+    """Bounds in the world of boxes `local` (m, 3) moved by poses T (..., m, 4, 4)."""
+    rotation = T[..., :3, :3]
+    centre = np.einsum("...ij,...j->...i", rotation, local.centre) + T[..., :3, 3]
+    return Bounds(centre, np.einsum("...ij,...j->...i", np.abs(rotation), local.half))

@@ -1,0 +1,49 @@
+"""Grasps of the outer lip: the paper's family for the plate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mmplan.genes import GeneSpace
+from mmplan.grasps.family import poses_from
+from mmplan.shapes import Array
+
+
+@dataclass(frozen=True)
+class Rim:
+    """The target point lies on a circle about z, the approach in the circle's plane.
+
+    Two genes (paper, section V): the place on the lip as an angle about z, in rad, and
+    the approach direction as its angle to the direction towards the axis, at most
+    `spread` either way. `radius` and `height` (m) are those of the lip's circle. The
+    fingers close across the plane.
+    """
+
+    radius: float
+    height: float
+    spread: float = np.pi / 3
+
+    @property
+    def genes(self) -> GeneSpace:
+        """Place on the lip and approach direction."""
+        return GeneSpace(
+            np.array([-np.pi, -self.spread]),
+            np.array([np.pi, self.spread]),
+            np.array([True, False]),
+        )
+
+    def tool_poses(self, genes: Array) -> Array:
+        """The poses T_object_tool (n, 4, 4)."""
+        place, turn = genes.T
+        zero, one = np.zeros(len(genes)), np.ones(len(genes))
+        position = self.radius * np.stack([np.cos(place), np.sin(place), zero], axis=1)
+        position[:, 2] = self.height
+        direction = place + np.pi + turn
+        approach = np.stack([np.cos(direction), np.sin(direction), zero], axis=1)
+        return poses_from(approach, np.stack([zero, zero, one], axis=1), position)
+
+    def quality(self, genes: Array) -> Array:
+        """1 for all: fingers on both sides of the lip always close (paper, V)."""
+        return np.ones(len(genes))

@@ -1,0 +1,34 @@
+"""Optimizers of both bases and the grasp together: one algorithm a file, ask / tell."""
+
+from mmplan.optimizers.archive import Archive, Triple
+from mmplan.optimizers.bases import BasePlacements
+from mmplan.optimizers.coevolution import CoEvolution
+from mmplan.optimizers.optimizer import (
+    Optimizer,
+    OptimizerFactory,
+    Queries,
+    SearchSpace,
+)
+from mmplan.optimizers.random_sampling import RandomSampling
+from mmplan.optimizers.run import Optimization, optimize, search_space
+
+OPTIMIZERS: dict[str, OptimizerFactory] = {
+    "coevolution": CoEvolution,
+    "random": RandomSampling,
+}
+
+__all__ = [
+    "OPTIMIZERS",
+    "Archive",
+    "BasePlacements",
+    "CoEvolution",
+    "Optimization",
+    "Optimizer",
+    "OptimizerFactory",
+    "Queries",
+    "RandomSampling",
+    "SearchSpace",
+    "Triple",
+    "optimize",
+    "search_space",
+]

@@ -1,0 +1,169 @@
+"""Co-evolution of start bases, goal bases and grasps (paper, section IV.B)."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+
+import numpy as np
+
+from mmplan.genes import GeneSpace
+from mmplan.optimizers.archive import Archive, Triple, distinct
+from mmplan.optimizers.optimizer import Queries, SearchSpace
+from mmplan.problem import OptimizerSettings
+from mmplan.scoring import End
+from mmplan.shapes import Array
+
+# F_Grasp of a grasp that works at exactly one end (paper, section IV.B).
+ONE_END_FITNESS = 1.0
+
+_Search = Generator[Queries, Array, None]
+
+
+class CoEvolution:
+    """The paper's three populations, to the letter.
+
+    One cycle evolves each base population for one generation and then the grasps. A
+    generation evaluates its population, keeps the fittest half as parents and fills up
+    with their children. Populations are kept sorted, fittest first, unevaluated
+    children last. The evaluations asked for are those of eq. 3 and of F_Grasp; all are
+    asked for anew in every generation.
+    """
+
+    def __init__(
+        self,
+        space: SearchSpace,
+        settings: OptimizerSettings,
+        rng: np.random.Generator,
+    ) -> None:
+        """Draw the first populations.
+
+        Raises:
+            NoPlanError: There is no room for the base around the object.
+        """
+        self._space = space
+        self._settings = settings
+        self._rng = rng
+        self._bases = {
+            end: space.bases[end].sample(settings.bases, rng) for end in End
+        }
+        self._grasps = space.grasps.sample(settings.grasps, rng)
+        self._asked = 0
+        self._search = self._cycle_forever()
+        self._pending = next(self._search)
+
+    @property
+    def cycles(self) -> float:
+        """How many cycles the evaluations told so far amount to."""
+        settings = self._settings
+        cycle = 2 * settings.partners * (settings.bases + settings.grasps)
+        return self._asked / cycle
+
+    def ask(self, limit: int) -> Queries:
+        """The current generation's evaluations; its head if the budget ends in it."""
+        self._pending = self._pending.head(limit)
+        return self._pending
+
+    def tell(self, totals: Array) -> None:
+        """Finish the generation."""
+        self._asked += len(totals)
+        self._pending = self._search.send(totals)
+
+    def candidates(self, archive: Archive, most: int) -> list[Triple]:
+        """The best grasps of the population with their best bases in the populations.
+
+        Scores are those that the search came by; the first is the best joint candidate
+        by the sum of its two scores.
+        """
+        bases = {
+            row.tobytes()
+            for end in End
+            for row in self._space.bases[end].q_base(self._bases[end])
+        }
+        grasps = {row.tobytes() for row in self._grasps}
+        triples = archive.triples(grasps, bases)
+        return distinct(triples, self._space.grasps.range, most)
+
+    def _cycle_forever(self) -> _Search:
+        while True:
+            for end in End:
+                yield from self._evolve_bases(end)
+            yield from self._evolve_grasps()
+
+    def _evolve_bases(self, end: End) -> _Search:
+        """One generation; F_Base is the best score with the k fittest grasps (eq. 3)."""
+        bases = self._bases[end]
+        q_base = self._space.bases[end].q_base(bases)
+        scores = yield from self._ask_all(end, q_base, self._fittest_grasps())
+        if scores is not None:
+            fitness = scores.max(axis=1)
+            self._bases[end] = self._next(bases, fitness, self._space.bases[end].genes)
+
+    def _evolve_grasps(self) -> _Search:
+        """One generation; F_Grasp sums the scores with the k fittest bases."""
+        sides = []
+        for end in End:
+            k = self._settings.partners
+            q_base = self._space.bases[end].q_base(self._bases[end][:k])
+            scores = yield from self._ask_all(end, q_base, self._grasps)
+            if scores is None:
+                return
+            sides.append(scores.sum(axis=0))
+        fitness = grasp_fitness(*sides)
+        self._grasps = self._next(self._grasps, fitness, self._space.grasps)
+
+    def _fittest_grasps(self) -> Array:
+        return self._grasps[: self._settings.partners]
+
+    def _ask_all(
+        self, end: End, q_base: Array, grasps: Array
+    ) -> Generator[Queries, Array, Array | None]:
+        """The scores (bases, grasps) of all pairs; None if the budget ends before."""
+        n, m = len(q_base), len(grasps)
+        totals = yield Queries(
+            np.full(n * m, end, np.int8),
+            np.repeat(q_base, m, axis=0),
+            np.tile(grasps, (n, 1)),
+        )
+        return totals.reshape(n, m) if len(totals) == n * m else None
+
+    def _next(self, population: Array, fitness: Array, genes: GeneSpace) -> Array:
+        """The fittest half, fittest first, then as many children as are missing."""
+        n = len(population)
+        parents = population[np.argsort(-fitness, kind="stable")][: (n + 1) // 2]
+        mutation = self._settings.mutation
+        children = breed(parents, n - len(parents), genes, mutation, self._rng)
+        return np.concatenate([parents, children])
+
+
+def grasp_fitness(start: Array, goal: Array) -> Array:
+    """F_Grasp (n,) from the sums of scores (n,) at either end.
+
+    1.0 where exactly one of them is 0, so that grasps that work at one end survive
+    without any advantage over other such grasps.
+    """
+    one_end = (start > 0.0) != (goal > 0.0)
+    return np.where(one_end, ONE_END_FITNESS, start + goal)
+
+
+def breed(
+    parents: Array,
+    n: int,
+    genes: GeneSpace,
+    mutation: float,
+    rng: np.random.Generator,
+) -> Array:
+    """n children (n, d) by two-point crossover of two different parents and mutation.
+
+    Each gene mutates with probability `mutation` by a uniform value of at most a
+    quarter of its range either way.
+    """
+    d = len(genes)
+    first = rng.integers(len(parents), size=n)
+    second = (first + rng.integers(1, max(len(parents), 2), size=n)) % len(parents)
+    cuts = np.sort(rng.integers(0, d + 1, (n, 2)), axis=1)
+    place = np.arange(d)
+    inside = (place >= cuts[:, :1]) & (place < cuts[:, 1:])
+    children = np.where(inside, parents[second], parents[first])
+    mutated = rng.random((n, d)) < mutation
+    step = rng.uniform(-0.25, 0.25, (n, d)) * genes.range
+    return genes.contain(children + np.where(mutated, step, 0.0))

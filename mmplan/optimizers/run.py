@@ -1,0 +1,111 @@
+"""Running an optimizer to the end of its budget."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from mmplan.optimizers.archive import Archive, Triple
+from mmplan.optimizers.bases import BasePlacements
+from mmplan.optimizers.optimizer import Optimizer, Queries, SearchSpace
+from mmplan.scoring import End, Outcome, ScoreFunction
+from mmplan.shapes import Array
+
+# Called with the evaluations done so far and the best sum of scores.
+Progress: TypeAlias = Callable[[int, float], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Optimization:
+    """What a search found and what it cost.
+
+    `history` (h, 2) has the evaluations spent and the best sum of two scores so far
+    after each batch. `outcomes` (2, outcomes) counts the evaluations at start and goal
+    by `Outcome`. `evaluated` keeps every query, for the account of a failure.
+    """
+
+    candidates: tuple[Triple, ...]
+    evaluations: int
+    cycles: float | None
+    history: Array
+    outcomes: npt.NDArray[np.int64]
+    grasps_by_end: tuple[int, int, int]  # at start only, at goal only, at both
+    evaluated: Queries
+
+
+def search_space(score: ScoreFunction) -> SearchSpace:
+    """The annuli of bases about the object at both ends and the grasps' bounds."""
+    return SearchSpace({end: _placements(score, end) for end in End}, score.family.genes)
+
+
+def optimize(
+    score: ScoreFunction,
+    optimizer: Optimizer,
+    evaluations: int,
+    candidates: int,
+    progress: Progress | None = None,
+) -> Optimization:
+    """Let an optimizer spend its budget of score evaluations.
+
+    Every call of Score(q_base, grasp) that is asked for counts, also where the answer
+    is remembered. At most `candidates` distinct joint candidates are returned.
+    """
+    archive = Archive()
+    history: list[tuple[int, float]] = []
+    asked: list[Queries] = []
+    outcomes = np.zeros((len(End), len(Outcome)), np.int64)
+    spent = 0
+    while spent < evaluations:
+        queries = optimizer.ask(evaluations - spent)
+        totals = _evaluate(score, queries, archive, outcomes)
+        optimizer.tell(totals)
+        spent += len(totals)
+        asked.append(queries)
+        history.append((spent, archive.best))
+        if progress is not None:
+            progress(spent, archive.best)
+    return Optimization(
+        candidates=tuple(optimizer.candidates(archive, candidates)),
+        evaluations=spent,
+        cycles=optimizer.cycles,
+        history=np.array(history),
+        outcomes=outcomes,
+        grasps_by_end=archive.grasps_by_end(),
+        evaluated=Queries(*(np.concatenate(p) for p in zip(*asked, strict=True))),
+    )
+
+
+def _evaluate(
+    score: ScoreFunction,
+    queries: Queries,
+    archive: Archive,
+    outcomes: npt.NDArray[np.int64],
+) -> Array:
+    """The scores (n,) of what was asked for, entered into archive and counts."""
+    totals = np.zeros(len(queries.end))
+    for end in End:
+        rows = np.flatnonzero(queries.end == end)
+        if len(rows) == 0:
+            continue
+        scores = score(end, queries.q_base[rows], queries.grasps[rows])
+        totals[rows] = scores.total
+        np.add.at(outcomes[end], scores.outcome, 1)
+        for row in rows[scores.total > 0.0]:
+            archive.add(end, queries.q_base[row], queries.grasps[row], totals[row])
+    return totals
+
+
+def _placements(score: ScoreFunction, end: End) -> BasePlacements:
+    robot = score.problem.robot
+    x, y, _ = score.centre_of_mass(end)
+    return BasePlacements(
+        centre=(float(x), float(y)),
+        inner=robot.base_radius,
+        outer=robot.reach,
+        is_free=lambda q_base: score.base_outcomes(end, q_base) == Outcome.SCORED,
+    )
+

@@ -1,0 +1,32 @@
+"""Configuration desirability: the manipulability M."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mmplan.kinematics import tool_jacobians
+from mmplan.robot import Robot
+from mmplan.scoring.term import Grasped
+from mmplan.shapes import Array
+
+
+class Manipulability:
+    """M = min(eigs(J Jᵀ)) (paper, eq. 1), J the arm's Jacobian at the tool.
+
+    J is in metres and radians; the axes it is expressed in do not change M.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        """Prepare for one robot."""
+        self._robot = robot
+
+    def __call__(self, grasped: Grasped) -> Array:
+        """M of each configuration, (n,)."""
+        return manipulability(self._robot, grasped.q)
+
+
+def manipulability(robot: Robot, q: Array) -> Array:
+    """The smallest eigenvalue of J Jᵀ at configurations q (n, nq), (n,)."""
+    J = tool_jacobians(robot.model, robot.tool_frame, q, robot.arm.indices)  # (n, 6, k)
+    smallest: Array = np.linalg.eigvalsh(J @ J.transpose(0, 2, 1))[:, 0]
+    return np.maximum(smallest, 0.0)

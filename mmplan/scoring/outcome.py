@@ -1,0 +1,44 @@
+"""How the evaluation of one base and one grasp can end."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class End(IntEnum):
+    """The two ends of a task: where the object stands and where it must go."""
+
+    START = 0
+    GOAL = 1
+
+
+class Outcome(IntEnum):
+    """Why a base and a grasp score 0, or that they score; tested in this order."""
+
+    OUT_OF_BOUNDS = 0  # the base is outside of where it may go
+    BASE_COLLISION = 1  # the base alone hits something
+    NO_CONTACT = 2  # the hand does not close on the object
+    LOW_QUALITY = 3  # the grasp quality is below the threshold
+    NO_IK = 4  # the arm does not reach the grasp
+    JOINT_LIMITS = 5  # it does, but only beyond its joint limits
+    COLLISION = 6  # the robot hits something with the hand closed
+    HAND_OPEN_COLLISION = 7  # only the opened hand does
+    SCORED = 8
+
+    @property
+    def label(self) -> str:
+        """What to call it in a report."""
+        return _LABELS[self]
+
+
+_LABELS = {
+    Outcome.OUT_OF_BOUNDS: "base outside its bounds",
+    Outcome.BASE_COLLISION: "base in collision",
+    Outcome.NO_CONTACT: "hand does not close on the object",
+    Outcome.LOW_QUALITY: "grasp quality too low",
+    Outcome.NO_IK: "out of the arm's reach",
+    Outcome.JOINT_LIMITS: "beyond the joint limits",
+    Outcome.COLLISION: "in collision",
+    Outcome.HAND_OPEN_COLLISION: "opened hand in collision",
+    Outcome.SCORED: "feasible",
+}

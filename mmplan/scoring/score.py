@@ -1,0 +1,183 @@
+"""Score(q_base, grasp): grasp quality, manipulability and clutter in one number."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from mmplan.collision import CollisionWorld, HandCloser
+from mmplan.grasps import GraspFamily
+from mmplan.problem import Problem, Task
+from mmplan.scoring.clutter import Clutter
+from mmplan.scoring.feasibility import Feasibility, Holds
+from mmplan.scoring.grasp_quality import grasp_quality
+from mmplan.scoring.manipulability import Manipulability
+from mmplan.scoring.outcome import End, Outcome
+from mmplan.scoring.term import Grasped, RowCache
+from mmplan.shapes import Array
+
+# What a term counts that is at the robot's scale.
+POINTS = 50.0
+TERMS = ("grasp", "manipulability", "clutter")
+
+
+class Scores(NamedTuple):
+    """What n pairs of base and grasp are worth at one end.
+
+    `q` is the best configuration, hand closed, NaN where there is none; `terms` holds
+    the weighted terms in the order of `TERMS`, which add up to `total`.
+    """
+
+    total: Array  # (n,)
+    terms: Array  # (n, 3)
+    q: Array  # (n, nq)
+    outcome: npt.NDArray[np.int8]  # (n,) of Outcome
+
+
+class ScoreFunction:
+    """The score of the paper's section IV.A for one task.
+
+    `Score(q_base, grasp)` is the greatest weighted sum of the terms over all solutions
+    of inverse kinematics that are feasible at the given end, and 0 if there is none.
+    Answers are remembered: the same base, grasp and end are evaluated once.
+    """
+
+    def __init__(
+        self, problem: Problem, task: Task, world: CollisionWorld, family: GraspFamily
+    ) -> None:
+        """Prepare for a task in a world in which its object stands at the start."""
+        self.problem = problem
+        self.task = task
+        self.family = family
+        self.worlds = {
+            End.START: world.place(task.object, world.standing[task.object]),
+            End.GOAL: world.place(task.object, task.T_world_goal),
+        }
+        robot = problem.robot
+        self._feasible = {
+            end: Feasibility(problem, w, task.object) for end, w in self.worlds.items()
+        }
+        self._closer = HandCloser(robot, world.scenery.objects[task.object])
+        self._centre = world.scenery.centre_of_mass(task.object)
+        self.manipulability = Manipulability(robot)
+        self.clutter = Clutter(
+            robot, {e: w.without(task.object) for e, w in self.worlds.items()}
+        )
+        settings, scales = problem.score, robot.score_scales
+        self._factors = POINTS * np.array(
+            [
+                settings.grasp,
+                settings.manipulability / scales.manipulability,
+                settings.clutter / scales.clutter,
+            ]
+        )
+        self._holds = RowCache()
+        self._bases = {end: RowCache() for end in End}
+        self._scores = {end: RowCache() for end in End}
+        self._numbers: dict[bytes, int] = {}
+
+    def __call__(self, end: End, q_base: Array, grasps: Array) -> Scores:
+        """Score bases (n, b) with grasp genes (n, g), row by row, at one end."""
+        keys = [b + g for b, g in zip(_keys(q_base), _keys(grasps), strict=True)]
+        rows = self._scores[end].rows(
+            list(keys), lambda new: self._evaluate(end, q_base[new], grasps[new])
+        )
+        nq = self.problem.robot.model.nq
+        total, terms, q, outcome = np.split(rows, [1, 4, 4 + nq], axis=1)
+        return Scores(total[:, 0], terms, q, outcome[:, 0].astype(np.int8))
+
+    def centre_of_mass(self, end: End) -> Array:
+        """The object's centre of mass in the world at one end, (3,), m."""
+        T = self.worlds[end].standing[self.task.object]
+        return T[:3, :3] @ self._centre + T[:3, 3]
+
+    def holds(self, grasps: Array) -> Holds:
+        """Tool poses and hand openings of grasp genes (n, g)."""
+        rows = self._holds.rows(
+            list(_keys(grasps)), lambda new: self._hold(grasps[new])
+        )
+        hand = len(self.problem.robot.hand)
+        pose, opened, closed, outcome = np.split(rows, [16, 16 + hand, 16 + 2 * hand], 1)
+        return Holds(
+            pose.reshape(-1, 4, 4), opened, closed, outcome[:, 0].astype(np.int8)
+        )
+
+    def base_outcomes(self, end: End, q_base: Array) -> npt.NDArray[np.int8]:
+        """What is known of bases (n, b) without any grasp, (n,) of Outcome."""
+        rows = self._bases[end].rows(
+            list(_keys(q_base)),
+            lambda new: self._feasible[end].base_outcomes(q_base[new])[:, None],
+        )
+        return rows[:, 0].astype(np.int8)
+
+    def _hold(self, grasps: Array) -> Array:
+        """The rows of `_holds`: pose, opened and closed hand, outcome."""
+        T_object_tool = self.family.tool_poses(grasps)
+        closings = self._closer.close(T_object_tool)
+        outcome = np.where(closings.touches, Outcome.SCORED, Outcome.NO_CONTACT)
+        low = grasp_quality(self.family, grasps) < self.problem.score.min_quality
+        outcome = np.where(closings.touches & low, Outcome.LOW_QUALITY, outcome)
+        return np.concatenate(
+            [
+                T_object_tool.reshape(-1, 16),
+                closings.opened,
+                closings.closed,
+                outcome[:, None],
+            ],
+            axis=1,
+        )
+
+    def _evaluate(self, end: End, q_base: Array, grasps: Array) -> Array:
+        """The rows of `_scores`: total, terms, q, outcome."""
+        n, nq = len(q_base), self.problem.robot.model.nq
+        holds = self.holds(grasps)
+        outcome = np.minimum(self.base_outcomes(end, q_base), holds.outcome)
+        tried = np.flatnonzero(outcome == Outcome.SCORED)
+        feasible = self._feasible[end](
+            q_base[tried], Holds(*(part[tried] for part in holds))
+        )
+        outcome[tried] = feasible.outcome
+        row = tried[feasible.row]
+        terms = self._terms(end, q_base[row], grasps[row], feasible.q)
+        totals = terms.sum(axis=1)
+        best = _best_of_each(row, totals)
+        result = np.zeros((n, 4 + nq + 1))
+        result[:, 4:-1] = np.nan
+        result[row[best], 0] = totals[best]
+        result[row[best], 1:4] = terms[best]
+        result[row[best], 4:-1] = feasible.q[best]
+        result[:, -1] = outcome
+        return result
+
+    def _terms(self, end: End, q_base: Array, grasps: Array, q: Array) -> Array:
+        """The weighted terms (m, 3) of feasible configurations q (m, nq)."""
+        if len(q) == 0:
+            return np.zeros((0, len(TERMS)))
+        grasped = Grasped(end, q, self._number(q_base), self._number(grasps))
+        raw = [
+            grasp_quality(self.family, grasps),
+            self.manipulability(grasped),
+            self.clutter(grasped),
+        ]
+        return np.stack(raw, axis=1) * self._factors
+
+    def _number(self, rows: Array) -> npt.NDArray[np.int64]:
+        """A number for each row, the same for equal rows."""
+        numbers = self._numbers
+        found = [numbers.setdefault(key, len(numbers)) for key in _keys(rows)]
+        return np.array(found, dtype=np.int64)
+
+
+def _keys(rows: Array) -> list[bytes]:
+    """Hashable keys of the rows of an array (n, d)."""
+    return [row.tobytes() for row in np.ascontiguousarray(rows)]
+
+
+def _best_of_each(row: npt.NDArray[np.int64], totals: Array) -> npt.NDArray[np.int64]:
+    """The places of the greatest total of each row; the first of equals."""
+    order = np.lexsort((np.arange(len(row)), -totals, row))
+    first = np.ones(len(row), dtype=np.bool_)
+    first[1:] = row[order][1:] != row[order][:-1]
+    return order[first]
