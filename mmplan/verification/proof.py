@@ -1,0 +1,243 @@
+"""The proof that nothing touches at any time of a segment.
+
+Adaptive bisection of time after F. Schwarzer, M. Saha and J.-C. Latombe, "Adaptive
+dynamic collision checking for single and multiple articulated robots in complex
+environments", IEEE Transactions on Robotics 21(3), 2005. In the middle of a stretch
+of time the distance of a pair of bodies is d. Until either end of the stretch, no point
+of the one body moves farther relative to the other than
+
+    reach = Σ_j (largest speed of joint j · half of the stretch) · lever of joint j
+
+over the joints between the two. A pair with d > reach stays apart all through the
+stretch; where that is not so, the stretch is split, and only such pairs go on. A pair
+that touches is found: the splitting ends with an overlap in the middle of a stretch or,
+once the reach is below `SMALLEST_REACH`, with a pair too near to be proven apart. The
+speeds are those of the cubic Hermite curve that is delivered.
+
+Most pairs are settled by lower bounds of d from spheres and boxes, computed for all
+stretches and pairs at once; only the rest are given to coal, nearest first. To learn
+the smallest clearance as well, a pair counts as settled only if it is shown to stay
+farther apart than a share of the smallest distance found so far (`Ledger.floor`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mmplan.hermite import HermiteCurve
+from mmplan.shapes import Array
+from mmplan.verification.bodies import Bodies, Indices, Mask
+from mmplan.verification.gaps import box_gaps, sphere_gaps
+from mmplan.verification.ledger import Finding, Ledger
+from mmplan.verification.touching import TouchRule
+
+# The first stretches of time are at most this long, s.
+FIRST_STRETCH = 0.25
+# A stretch within which a pair cannot move farther than this is not split, m.
+SMALLEST_REACH = 1e-5
+# coal's distances are trusted down to this, m.
+DISTANCE_ERROR = 1e-6
+# Pairs times stretches that are looked at together.
+_BATCH = 100_000
+
+
+@dataclass(frozen=True, eq=False)
+class _Open:
+    """Pairs not settled yet, each over one of the stretches [start, end] of time."""
+
+    start: Array  # (n,), s
+    end: Array  # (n,), s
+    stretch: Indices  # (k,), into start and end
+    pair: Indices  # (k,)
+
+    @property
+    def middle(self) -> Array:
+        """The middles of the stretches, (n,)."""
+        return (self.start + self.end) / 2.0
+
+    def split(self, still: Mask) -> _Open:
+        """Those that are `still` open, over both halves of their stretches."""
+        used, stretch = np.unique(self.stretch[still], return_inverse=True)
+        start, middle, end = self.start[used], self.middle[used], self.end[used]
+        return _Open(
+            start=np.concatenate([start, middle]),
+            end=np.concatenate([middle, end]),
+            stretch=np.concatenate([stretch, stretch + len(used)]),
+            pair=np.tile(self.pair[still], 2),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Margins:
+    """What is known of k open pairs in the middles of their stretches, all (k,)."""
+
+    distance: Array  # m, exact or a lower bound
+    exact: Mask
+    reach: Array  # m
+    allowed: Array  # m of overlap, at any time of the stretch
+    allowed_now: Array  # m of overlap, in the middle of the stretch
+
+    @property
+    def slack(self) -> Array:
+        """How far the pairs keep at least from the overlap allowed, m."""
+        return self.distance - DISTANCE_ERROR - self.reach + self.allowed
+
+
+class SegmentProof:
+    """The proof for one segment of a plan, written to a ledger."""
+
+    def __init__(
+        self,
+        stage: int,
+        curve: HermiteCurve,
+        bodies: Bodies,
+        rule: TouchRule,
+        ledger: Ledger,
+    ) -> None:
+        """Prepare the proof of segment number `stage`, for the pairs of `bodies`."""
+        self._stage = stage
+        self._curve = curve
+        self._bodies = bodies
+        self._rule = rule
+        self._ledger = ledger
+        self._first, self._second = bodies.world.pairs.reshape(-1, 2).T
+        self._levers = bodies.relative_levers(self._first, self._second)
+
+    def run(self) -> None:
+        """Go through the whole segment."""
+        for pairs in self._batches():
+            while len(pairs.pair):
+                self._ledger.intervals += len(pairs.start)
+                pairs = pairs.split(self._settle(pairs))
+
+    def _batches(self) -> Iterator[_Open]:
+        """All pairs over the first stretches."""
+        duration = float(self._curve.times[-1])
+        edges = np.linspace(0.0, duration, int(np.ceil(duration / FIRST_STRETCH)) + 1)
+        count = len(self._first)
+        step = max(1, _BATCH // max(1, count))
+        for i in range(0, len(edges) - 1, step):
+            start = edges[i : i + step + 1][:-1]
+            yield _Open(
+                start=start,
+                end=edges[i + 1 : i + 1 + len(start)],
+                stretch=np.repeat(np.arange(len(start)), count),
+                pair=np.tile(np.arange(count), len(start)),
+            )
+
+    def _settle(self, pairs: _Open) -> Mask:
+        """Which pairs must be looked at in both halves of their stretches, (k,)."""
+        margins = self._margins(pairs)
+        slack, ledger = margins.slack, self._ledger
+        strict = margins.allowed == 0.0
+        unsettled = slack <= np.where(strict, ledger.floor, 0.0)
+        overlap = margins.exact & (margins.distance + margins.allowed_now <= 0.0)
+        small = margins.reach <= SMALLEST_REACH
+        undecided = unsettled & small & (slack <= 0.0) & ~overlap
+        split = unsettled & ~small & ~overlap
+        proven = slack[strict & ~(overlap | undecided | split)]
+        ledger.proven = min(ledger.proven, np.min(proven, initial=np.inf))
+        for k in np.flatnonzero(overlap):
+            ledger.note_overlap(self._finding(pairs, margins, k))
+        for k in np.flatnonzero(undecided):
+            ledger.note_undecided(self._finding(pairs, margins, k))
+        return split
+
+    def _margins(self, pairs: _Open) -> _Margins:
+        T = self._bodies.joint_poses(self._curve.positions(pairs.middle))
+        speed = self._curve.velocity_extremes(pairs.start, pairs.end).magnitude
+        reach = speed * ((pairs.end - pairs.start) / 2.0)[:, None]  # (n, nq)
+        levers = self._levers[pairs.pair]
+        at = (pairs.stretch, pairs.pair)
+        margins = _Margins(
+            distance=self._sphere_gaps(pairs, T),
+            exact=np.zeros(len(pairs.pair), dtype=np.bool_),
+            reach=np.einsum("kj,kj->k", reach[pairs.stretch], levers),
+            allowed=self._rule.throughout(T, reach, *at),
+            allowed_now=self._rule.at(T, *at),
+        )
+        self._sharpen(pairs, T, margins)
+        return margins
+
+    def _sphere_gaps(self, pairs: _Open, T_world_joint: Array) -> Array:
+        bodies = self._bodies
+        first, second = self._first[pairs.pair], self._second[pairs.pair]
+        centres = bodies.centres_at(T_world_joint)
+        apart = centres[pairs.stretch, second] - centres[pairs.stretch, first]
+        return sphere_gaps(apart, bodies.radii[first] + bodies.radii[second])
+
+    def _box_gaps(self, pairs: _Open, T_world_joint: Array, which: Indices) -> Array:
+        bodies, stretch = self._bodies, pairs.stretch[which]
+        first, second = self._first[pairs.pair[which]], self._second[pairs.pair[which]]
+        centres = bodies.centres_at(T_world_joint)
+        return box_gaps(
+            centres[stretch, second] - centres[stretch, first],
+            bodies.rotations_at(T_world_joint, stretch, first),
+            bodies.halves[first],
+            bodies.rotations_at(T_world_joint, stretch, second),
+            bodies.halves[second],
+        )
+
+    def _sharpen(self, pairs: _Open, T_world_joint: Array, margins: _Margins) -> None:
+        """Make distances as sharp as it takes to settle pairs, the nearest first."""
+        ledger, strict = self._ledger, margins.allowed == 0.0
+        ask = _Distances(self._bodies, T_world_joint)
+
+        def measure(k: np.intp) -> None:
+            pair, stretch = pairs.pair[k], int(pairs.stretch[k])
+            margins.distance[k] = ask(stretch, self._first[pair], self._second[pair])
+            margins.exact[k] = True
+            ledger.queries += 1
+            if margins.allowed_now[k] == 0.0:
+                ledger.note_distance(self._finding(pairs, margins, k))
+
+        if ledger.nearest is None:
+            measure(np.argmin(margins.slack))
+        rough = np.flatnonzero(~margins.exact & (margins.slack <= ledger.floor))
+        boxes = self._box_gaps(pairs, T_world_joint, rough)
+        margins.distance[rough] = np.maximum(margins.distance[rough], boxes)
+        rough = rough[margins.slack[rough] <= ledger.floor]
+        slack = margins.slack[rough]
+        for i in np.argsort(slack, kind="stable"):
+            if slack[i] > ledger.floor:
+                break
+            if strict[rough[i]] or slack[i] <= 0.0:
+                measure(rough[i])
+
+    def _finding(self, pairs: _Open, margins: _Margins, k: np.intp) -> Finding:
+        owners, pair = self._bodies.owners, pairs.pair[k]
+        return Finding(
+            stage=self._stage,
+            first=owners[self._first[pair]],
+            second=owners[self._second[pair]],
+            time=float(pairs.middle[pairs.stretch[k]]),
+            distance=float(margins.distance[k]),
+            allowed=float(margins.allowed_now[k]),
+        )
+
+
+class _Distances:
+    """Exact distances at some moments; poses are made once a body and moment."""
+
+    def __init__(self, bodies: Bodies, T_world_joint: Array) -> None:
+        self._bodies = bodies
+        self._T = T_world_joint
+        self._poses: dict[tuple[int, int], Any] = {}
+
+    def __call__(self, moment: int, first: np.int64, second: np.int64) -> float:
+        """The signed distance (m) of two bodies at a moment."""
+        i, j = int(first), int(second)
+        poses = self._pose(moment, i), self._pose(moment, j)
+        return self._bodies.separation.distance(i, poses[0], j, poses[1])
+
+    def _pose(self, moment: int, body: int) -> Any:
+        key = (moment, body)
+        if key not in self._poses:
+            bodies = self._bodies
+            T = self._T[moment, bodies.joints[body]] @ bodies.placements[body]
+            self._poses[key] = bodies.separation.pose(T)
+        return self._poses[key]
