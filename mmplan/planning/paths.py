@@ -1,0 +1,174 @@
+"""Planning of one path: the ends checked, a search, and the path made short."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from mmplan.planning.checking import PathChecker
+from mmplan.planning.joints import MovingJoints
+from mmplan.planning.planners import require_planner
+from mmplan.planning.search import Search, search
+from mmplan.planning.shortening import path_length, shorten
+from mmplan.planning.world import PlanningWorld, contact_names
+from mmplan.problem import PlannerSettings
+from mmplan.shapes import Array, read_only
+
+
+class Outcome(Enum):
+    """How the planning of a path ended."""
+
+    FOUND = "found"
+    INVALID_START = "invalid start"
+    INVALID_GOAL = "invalid goal"
+    ITERATIONS = "iterations exhausted"
+    TIME_LIMIT = "time limit reached"
+    GAVE_UP = "planner gave up"
+
+
+@dataclass(frozen=True, eq=False)
+class PathResult:
+    """A path, or why there is none and how far the search got.
+
+    Lengths and gaps are weighted by the joints' lever arms: a bound on how far points
+    of the robot move.
+    """
+
+    outcome: Outcome
+    message: str  # one line for people
+    path: Array | None = None  # (n, nq) waypoints, straight lines between them
+    goal: int | None = None  # which of the goals it reaches
+    length: float = 0.0  # m
+    gap: float = 0.0  # m, from where a failed search ended to the nearest goal
+    start_tree: int = 0  # states that a failed search connected to the start
+    goal_tree: int = 0  # and to the goals
+    iterations: int = 0
+    states: int = 0  # checked
+    edges: int = 0  # checked
+
+    @property
+    def found(self) -> bool:
+        """Whether there is a path."""
+        return self.path is not None
+
+
+def plan_path(
+    world: PlanningWorld,
+    q_start: Array,
+    q_goals: Array,
+    joints: MovingJoints,
+    settings: PlannerSettings,
+    rng: np.random.Generator,
+) -> PathResult:
+    """Plan a path from q_start (nq,) to any of q_goals (g, nq).
+
+    Goals in collision or out of limits are left out. Where a goal can be reached in a
+    straight line, that is the path. The same generator state gives the same path.
+
+    Raises:
+        InputError: if there is no planner of that name.
+        ValueError: if there are no goals or they differ from the start in a joint that
+            does not move.
+    """
+    require_planner(settings.name)
+    q_goals = np.atleast_2d(q_goals)
+    _require_still(world, q_start, q_goals, joints)
+    checker = PathChecker(world, settings.resolution)
+    fault = _fault(world, q_start, joints)
+    if fault:
+        return _failure(checker, Outcome.INVALID_START, f"the start: {fault}")
+    faults = [_fault(world, q, joints) for q in q_goals]
+    usable = np.array([i for i, f in enumerate(faults) if f is None], dtype=np.int64)
+    if not len(usable):
+        return _failure(checker, Outcome.INVALID_GOAL, f"the goal: {faults[0]}")
+    straight = _straight_path(checker, q_start, q_goals[usable])
+    seed = int(rng.integers(1, 2**31))
+    if straight is not None:
+        return _success(checker, straight, q_goals)
+    found = search(checker, q_start, q_goals[usable], joints, settings, seed)
+    if found.waypoints is None:
+        return _exhausted(checker, found)
+    waypoints = _with_exact_ends(found.waypoints, q_start, q_goals[usable])
+    path = shorten(waypoints, checker, settings.shortcuts, rng)
+    return _success(checker, path, q_goals, found.iterations)
+
+
+def _require_still(
+    world: PlanningWorld, q_start: Array, q_goals: Array, joints: MovingJoints
+) -> None:
+    if not len(q_goals):
+        raise ValueError("a path needs at least one goal")
+    still = np.setdiff1d(np.arange(len(q_start)), joints.indices)
+    moved = still[np.any(q_goals[:, still] != q_start[still], axis=0)]
+    if len(moved):
+        names = [world.model.names[j] for j in range(1, world.model.njoints)]
+        by_index = {world.model.joints[j + 1].idx_q: n for j, n in enumerate(names)}
+        culprits = ", ".join(by_index[int(i)] for i in moved)
+        raise ValueError(f"joints that do not move differ at the goal: {culprits}")
+
+
+def _fault(world: PlanningWorld, q: Array, joints: MovingJoints) -> str | None:
+    """What is wrong with an end of the path, None if nothing is."""
+    outside = joints.outside(q)
+    if outside:
+        return outside
+    return contact_names(world, q) if world.any_collision(q[None]) else None
+
+
+def _straight_path(
+    checker: PathChecker, q_start: Array, q_goals: Array
+) -> Array | None:
+    """The straight path to the nearest goal that has one."""
+    distances = np.linalg.norm((q_goals - q_start) * checker.sweep.weights, axis=1)
+    for q_goal in q_goals[np.argsort(distances, kind="stable")]:
+        if checker.edge_free(q_start, q_goal):
+            return np.vstack([q_start, q_goal])
+    return None
+
+
+def _with_exact_ends(waypoints: Array, q_start: Array, q_goals: Array) -> Array:
+    """The waypoints with the ends asked for instead of what scaling made of them."""
+    off = np.abs(q_goals - waypoints[-1]).max(axis=1)
+    return np.vstack([q_start, waypoints[1:-1], q_goals[np.argmin(off)]])
+
+
+def _success(
+    checker: PathChecker, path: Array, q_goals: Array, iterations: int = 0
+) -> PathResult:
+    goal = int(np.flatnonzero(np.all(q_goals == path[-1], axis=1))[0])
+    length = path_length(path, checker.sweep.weights)
+    return PathResult(
+        outcome=Outcome.FOUND,
+        message=f"a path of {len(path)} waypoints after {iterations} iterations",
+        path=read_only(path),
+        goal=goal,
+        length=length,
+        iterations=iterations,
+        states=checker.states,
+        edges=checker.edges,
+    )
+
+
+def _failure(checker: PathChecker, outcome: Outcome, message: str) -> PathResult:
+    return PathResult(outcome, message, states=checker.states, edges=checker.edges)
+
+
+def _exhausted(checker: PathChecker, found: Search) -> PathResult:
+    outcome = Outcome.TIME_LIMIT if found.out_of_time else Outcome.ITERATIONS
+    message = (
+        f"{outcome.value} after {found.iterations} iterations and {checker.edges} "
+        f"edges: {found.start_tree} states connected to the start, "
+        f"{found.goal_tree} to the goal, {found.gap:.2f} m left to go"
+    )
+    return PathResult(
+        outcome=outcome,
+        message=message,
+        gap=found.gap,
+        start_tree=found.start_tree,
+        goal_tree=found.goal_tree,
+        iterations=found.iterations,
+        states=checker.states,
+        edges=checker.edges,
+    )

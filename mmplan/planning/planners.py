@@ -1,0 +1,49 @@
+"""OMPL's geometric planners, by name."""
+
+from __future__ import annotations
+
+from ompl import base as ob
+from ompl import geometric as og
+
+from mmplan.exceptions import InputError
+from mmplan.files.suggestions import unknown
+
+# The longest edge that a planner adds to its tree or graph, m.
+RANGE = 1.5
+
+# They look for the solution in a second thread, which waits for ever for the Python
+# interpreter that the first one holds; and when it finds one depends on the clock.
+_THREADED = frozenset({"PRM", "PRMstar"})
+
+
+def available_planners() -> tuple[str, ...]:
+    """The names that `make_planner` knows."""
+    return tuple(
+        name
+        for name, value in sorted(vars(og).items())
+        if isinstance(value, type) and issubclass(value, ob.Planner)
+        if name not in _THREADED
+    )
+
+
+def require_planner(name: str) -> None:
+    """Refuse a name that no planner has.
+
+    Raises:
+        InputError: naming what there is.
+    """
+    if name not in available_planners():
+        raise InputError(unknown("planner", name, available_planners()))
+
+
+def make_planner(name: str, si: ob.SpaceInformation) -> ob.Planner:
+    """A planner of that name, its range set where it has one.
+
+    Raises:
+        InputError: if there is none of that name.
+    """
+    require_planner(name)
+    planner = getattr(og, name)(si)
+    if hasattr(planner, "setRange"):
+        planner.setRange(RANGE)
+    return planner

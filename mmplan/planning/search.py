@@ -1,0 +1,155 @@
+"""One search for a path by one of OMPL's planners, bounded by counts."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+from ompl import base as ob
+from ompl import util as ou
+
+from mmplan.planning.checking import PathChecker
+from mmplan.planning.joints import MovingJoints
+from mmplan.planning.planners import make_planner
+from mmplan.planning.state_space import ScaledStates, space_information
+from mmplan.problem import PlannerSettings
+from mmplan.shapes import Array
+
+
+class Budget:
+    """Tells a planner when to stop; every time that it asks is one iteration."""
+
+    def __init__(self, iterations: int, time_limit: float) -> None:
+        """Allow so many iterations and, as a safety net, so many seconds."""
+        self._allowed = iterations
+        self._deadline = time.monotonic() + time_limit
+        self.iterations = 0
+        self.out_of_time = False
+
+    def __call__(self) -> bool:
+        """Whether the planner must stop."""
+        if self.iterations >= self._allowed:
+            return True
+        self.out_of_time = time.monotonic() > self._deadline
+        self.iterations += not self.out_of_time
+        return self.out_of_time
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What came of a search.
+
+    `gap` is how far from the nearest goal it ended, m of lever-arm-weighted distance.
+    `start_tree` and `goal_tree` are the numbers of states that the planner connected
+    to either end: a tree of one state tells that this end is hemmed in.
+    """
+
+    waypoints: Array | None  # (n, nq)
+    iterations: int
+    out_of_time: bool
+    gap: float
+    start_tree: int
+    goal_tree: int
+
+
+def search(
+    checker: PathChecker,
+    q_start: Array,
+    q_goals: Array,
+    joints: MovingJoints,
+    settings: PlannerSettings,
+    seed: int,
+) -> Search:
+    """Search a path from q_start (nq,) to any of q_goals (g, nq), all of them free.
+
+    Raises:
+        InputError: if there is no planner of that name.
+    """
+    with _own_randomness(seed):
+        states = ScaledStates(q_start, joints, checker.sweep.weights)
+        ends = np.vstack([q_start, q_goals])
+        si = space_information(states, joints, ends, checker)
+        problem = _problem(si, states, ends)
+        planner = make_planner(settings.name, si)
+        planner.setProblemDefinition(problem)
+        planner.setup()
+        budget = Budget(settings.iterations, settings.time_limit)
+        planner.solve(ob.PlannerTerminationCondition(budget))
+        found = problem.hasExactSolution()
+        start_tree, goal_tree = (0, 0) if found else _tree_sizes(planner, si)
+        return Search(
+            waypoints=_waypoints(problem, states) if found else None,
+            iterations=budget.iterations,
+            out_of_time=budget.out_of_time,
+            gap=0.0 if found else _gap(problem, states.scaled(ends)),
+            start_tree=start_tree,
+            goal_tree=goal_tree,
+        )
+
+
+@contextmanager
+def _own_randomness(seed: int) -> Iterator[None]:
+    """Start OMPL's random numbers from a seed, and keep OMPL quiet meanwhile.
+
+    OMPL complains about every seed but a process's first, although it obeys.
+    """
+    level = ou.getLogLevel()
+    ou.setLogLevel(ou.LogLevel.LOG_NONE)
+    try:
+        ou.RNG.setSeed(seed)
+        yield
+    finally:
+        ou.setLogLevel(level)
+
+
+def _problem(
+    si: ob.SpaceInformation, states: ScaledStates, ends: Array
+) -> ob.ProblemDefinition:
+    """The start (the first end) and the goals (the others) as OMPL wants them."""
+    problem = ob.ProblemDefinition(si)
+    goals = ob.GoalStates(si)
+    for i, q in enumerate(ends):
+        state = si.allocState()
+        states.write(q, state)
+        (problem.addStartState if i == 0 else goals.addState)(state)  # copies it
+    problem.setGoal(goals)
+    return problem
+
+
+def _waypoints(problem: ob.ProblemDefinition, states: ScaledStates) -> Array:
+    path = problem.getSolutionPath().getStates()
+    return np.array([states.configuration(state) for state in path])
+
+
+def _gap(problem: ob.ProblemDefinition, ends: Array) -> float:
+    """How far the search ended from a goal; ends (1 + goals, dimension), scaled."""
+    if problem.hasApproximateSolution():
+        return float(problem.getSolutionDifference())
+    return float(np.linalg.norm(ends[1:] - ends[0], axis=1).min())
+
+
+def _tree_sizes(planner: ob.Planner, si: ob.SpaceInformation) -> tuple[int, int]:
+    """How many states the planner connected to the start, and to the goals."""
+    data = ob.PlannerData(si)
+    planner.getPlannerData(data)
+    neighbours: dict[int, set[int]] = {i: set() for i in range(data.numVertices())}
+    for i in neighbours:
+        for j in data.getEdges(i):
+            neighbours[i].add(j)
+            neighbours[j].add(i)
+    starts = {data.getStartIndex(i) for i in range(data.numStartVertices())}
+    goals = {data.getGoalIndex(i) for i in range(data.numGoalVertices())}
+    return _connected(neighbours, starts), _connected(neighbours, goals)
+
+
+def _connected(neighbours: dict[int, set[int]], roots: set[int]) -> int:
+    """How many vertices of a graph are connected to any of the roots."""
+    seen, todo = set(roots), list(roots)
+    while todo:
+        new = neighbours[todo.pop()] - seen
+        seen |= new
+        todo.extend(new)
+    return len(seen)

@@ -1,0 +1,86 @@
+"""Shortening of paths, bounded by the number of attempts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mmplan.planning.checking import PathChecker
+from mmplan.shapes import Array
+
+# A shortcut is kept if it saves more than this length, m.
+MIN_GAIN = 1e-4
+
+
+def shorten(
+    path: Array, checker: PathChecker, attempts: int, rng: np.random.Generator
+) -> Array:
+    """A shorter path (m, nq) between the same ends, free where the given one is.
+
+    First drops waypoints that are not needed. Then tries shortcuts between two random
+    places, in turn of all joints and of one joint alone, the others going on as before
+    (Geraerts and Overmars, "Creating high-quality paths for motion planning", 2007).
+    Lengths are weighted by the joints' lever arms.
+    """
+    path = drop_waypoints(path, checker)
+    moving = np.flatnonzero(np.ptp(path, axis=0))
+    for attempt in range(attempts):
+        if len(path) == 2:  # straight already
+            break
+        joint = int(rng.choice(moving)) if attempt % 2 else None
+        first, second = np.sort(rng.random(2))
+        path = _try_shortcut(path, checker, (first, second), joint)
+    return drop_waypoints(path, checker)
+
+
+def drop_waypoints(path: Array, checker: PathChecker) -> Array:
+    """The path less the waypoints that a straight edge can do without, greedily."""
+    kept = [0]
+    while kept[-1] < len(path) - 1:
+        here = kept[-1]
+        ahead = range(len(path) - 1, here + 1, -1)
+        reach = (i for i in ahead if checker.edge_free(path[here], path[i]))
+        kept.append(next(reach, here + 1))
+    return path[kept]
+
+
+def path_length(path: Array, weights: Array) -> float:
+    """The length of a polyline (n, nq), m, weighted by lever arms (nq,)."""
+    return float(np.linalg.norm(np.diff(path, axis=0) * weights, axis=1).sum())
+
+
+def _try_shortcut(
+    path: Array, checker: PathChecker, places: tuple[float, float], joint: int | None
+) -> Array:
+    """The path with a shortcut between two places in [0, 1], or as it was."""
+    weights = checker.sweep.weights
+    steps = np.linalg.norm(np.diff(path, axis=0) * weights, axis=1)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    i, q_i = _place(path, along, places[0] * along[-1])
+    j, q_j = _place(path, along, places[1] * along[-1])
+    if i == j:
+        return path
+    old = np.vstack([q_i, path[i + 1 : j + 1], q_j])
+    new = np.vstack([q_i, q_j]) if joint is None else _straightened(old, weights, joint)
+    if path_length(old, weights) - path_length(new, weights) < MIN_GAIN:
+        return path
+    if not checker.path_free(new):
+        return path
+    return np.vstack([path[: i + 1], new, path[j + 1 :]])
+
+
+def _place(path: Array, along: Array, length: float) -> tuple[int, Array]:
+    """The edge at a length along the path, and the configuration there."""
+    edge = int(np.clip(np.searchsorted(along, length) - 1, 0, len(path) - 2))
+    step = along[edge + 1] - along[edge]
+    fraction = (length - along[edge]) / step if step > 0.0 else 0.0
+    q: Array = path[edge] + fraction * (path[edge + 1] - path[edge])
+    return edge, q
+
+
+def _straightened(part: Array, weights: Array, joint: int) -> Array:
+    """Part of a path (n, nq) with one joint moving evenly from end to end."""
+    steps = np.linalg.norm(np.diff(part, axis=0) * weights, axis=1)
+    along = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+    part = part.copy()
+    part[:, joint] = part[0, joint] + along * (part[-1, joint] - part[0, joint])
+    return part

@@ -1,0 +1,118 @@
+"""How far the points of the robot can move when its joints do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+import pinocchio as pin
+
+from mmplan.collision.bounds import local_bounds
+from mmplan.planning.world import PlanningWorld
+from mmplan.shapes import Array, read_only
+
+# A joint that moves no body still counts as if it had a lever arm of this length, m.
+MIN_WEIGHT = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """Lever arms: `reach[b, j]` bounds how far joint j moves any point of body b.
+
+    In m/rad for revolute joints and m/m for prismatic ones, over all configurations
+    within the joint limits (Schwarzer, Saha, Latombe, "Adaptive dynamic collision
+    checking for single and multiple articulated robots in complex environments", 2005).
+    """
+
+    reach: Array  # (bodies, nq)
+
+    @cached_property
+    def weights(self) -> Array:
+        """The longest lever arm of each joint (nq,), which makes distances lengths."""
+        return read_only(np.maximum(self.reach.max(axis=0, initial=0.0), MIN_WEIGHT))
+
+    def distance(self, dq: Array) -> Array:
+        """A bound on the way (m) of any point, (...,), for joint moves (..., nq)."""
+        ways: Array = (np.abs(dq) @ self.reach.T).max(axis=-1)
+        return ways
+
+
+def sweep_of(world: PlanningWorld) -> Sweep:
+    """The lever arms of a robot and of what it carries.
+
+    Raises:
+        ValueError: if a joint has more than one degree of freedom.
+    """
+    model = world.model
+    if model.nq != model.nv or model.njoints != model.nq + 1:
+        raise ValueError(f"{model.name}: every joint must have one degree of freedom")
+    corners: dict[int, Array] = {}
+    for body in world.geometry.geometryObjects:
+        joint = int(body.parentJoint)
+        if joint:
+            known = corners.get(joint, np.empty((0, 3)))
+            corners[joint] = np.vstack([known, _corners(body)])
+    axes = _axes(model)
+    rows = [_lever_arms(model, axes, joint, c) for joint, c in corners.items()]
+    return Sweep(read_only(_undominated(np.array(rows).reshape(-1, model.nq))))
+
+
+def _corners(body: pin.GeometryObject) -> Array:
+    """Corners (8, 3) of a box around a body, in the frame of its joint."""
+    centre, half = local_bounds(body.geometry)
+    corners = centre + half * np.array(list(product((-1.0, 1.0), repeat=3)))
+    T_joint_body = body.placement
+    placed: Array = corners @ T_joint_body.rotation.T + T_joint_body.translation
+    return placed
+
+
+def _axes(model: pin.Model) -> Array:
+    """The unit axis (linear or angular) of every joint in its frame, (njoints, 6)."""
+    data = model.createData()
+    pin.computeJointJacobians(model, data, pin.neutral(model))
+    axes = np.zeros((model.njoints, 6))
+    for joint in range(1, model.njoints):
+        J = pin.getJointJacobian(model, data, joint, pin.LOCAL)
+        axes[joint] = J[:, model.joints[joint].idx_v]
+    return axes
+
+
+def _lever_arms(model: pin.Model, axes: Array, joint: int, points: Array) -> Array:
+    """Bounds (nq,) on how far each joint moves `points` (n, 3) of one joint's frame.
+
+    Goes from the body towards the root. Above its own joint the body is known only as
+    a ball: somewhere within `radius` of `points`.
+    """
+    arms = np.zeros(model.nq)
+    radius = 0.0
+    while joint:
+        index = model.joints[joint].idx_q
+        squares = (points**2).sum(axis=1)
+        linear, angular = axes[joint, :3], axes[joint, 3:]
+        arms[index] = float(linear.any())
+        if angular.any():
+            arms[index] += np.sqrt(
+                np.maximum(squares - (points @ angular) ** 2, 0.0)
+            ).max()
+            arms[index] += radius
+        radius += np.sqrt(squares.max())
+        if linear.any():
+            lower = model.lowerPositionLimit[index]
+            upper = model.upperPositionLimit[index]
+            radius += max(abs(lower), abs(upper))
+        points = model.jointPlacements[joint].translation[None]
+        joint = int(model.parents[joint])
+    return arms
+
+
+def _undominated(rows: Array) -> Array:
+    """The rows that are not below another one in every column."""
+    rows = np.unique(rows, axis=0)
+    keep = [
+        i
+        for i, row in enumerate(rows)
+        if not np.any(np.all(np.delete(rows, i, axis=0) >= row, axis=1))
+    ]
+    return rows[keep]

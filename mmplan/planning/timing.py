@@ -1,0 +1,177 @@
+"""Timing of paths: a polyline becomes a motion within the robot's limits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from mmplan.hermite import HermiteCurve
+from mmplan.planning.blending import SmoothCurve, blend_sizes, smooth_curves
+from mmplan.planning.checking import PathChecker, even_fractions
+from mmplan.planning.joints import MotionLimits
+from mmplan.planning.speed_profile import SpeedProfile, even_in_length, even_in_time
+from mmplan.planning.world import PlanningWorld, contact_names
+from mmplan.shapes import Array, read_only
+
+# How often all blends are halved before the motion stops at every corner.
+HALVINGS = 3
+# How often samples are made twice as dense.
+DOUBLINGS = 3
+# A hair of slack, so that limits hold in any order of evaluation.
+SLACK = 1.0 + 1e-9
+
+
+@dataclass(frozen=True)
+class TimingSettings:
+    """How a path may be rounded and how densely the motion is sampled.
+
+    `rate` (1/s) is the density of the samples, `blend` (m) how far from the polyline a
+    rounded corner may take any point of the robot, and `deviation` (m) how far the
+    motion between samples may from the rounded path.
+    """
+
+    rate: float = 30.0
+    blend: float = 0.1
+    deviation: float = 0.001
+
+
+@dataclass(frozen=True, eq=False)
+class TimedPath:
+    """A motion of all joints from rest to rest.
+
+    Between the samples it is the cubic Hermite curve through positions and velocities.
+    """
+
+    times: Array  # (n,), s, strictly increasing from 0
+    positions: Array  # (n, nq), rad or m
+    velocities: Array  # (n, nq), rad/s or m/s
+
+    @property
+    def duration(self) -> float:
+        """The motion's length in time, s."""
+        return float(self.times[-1])
+
+    @cached_property
+    def curve(self) -> HermiteCurve:
+        """The curve through the samples."""
+        return HermiteCurve(self.times, self.positions, self.velocities)
+
+    def fastest(self) -> Array:
+        """The greatest speed of each joint between samples, (n - 1, nq)."""
+        return self.curve.velocity_extremes(self.times[:-1], self.times[1:]).magnitude
+
+    def stretched(self, factor: float) -> TimedPath:
+        """The same motion, slower by a factor."""
+        return TimedPath(self.times * factor, self.positions, self.velocities / factor)
+
+
+@dataclass(frozen=True, eq=False)
+class TimingResult:
+    """A motion along a path, or what stood in its way."""
+
+    motion: TimedPath | None
+    message: str  # one line for people
+    stops: int = 0  # corners at which the motion comes to rest
+    states: int = 0  # checked
+
+
+def time_path(
+    world: PlanningWorld,
+    path: Array,
+    limits: MotionLimits,
+    resolution: float,
+    settings: TimingSettings = TimingSettings(),
+) -> TimingResult:
+    """Move along a polyline (n, nq) as fast as the limits allow, from rest to rest.
+
+    Corners are rounded where that is free of collision; elsewhere the motion stops at
+    the corner. The motion itself, between its samples too, is checked at `resolution`
+    (m) and holds all limits exactly.
+
+    Raises:
+        ValueError: if the path does not move.
+    """
+    path = _without_repeats(path)
+    if len(path) < 2:
+        raise ValueError("a path that does not move has no timing")
+    checker = PathChecker(world, resolution)
+    sizes = blend_sizes(path, checker, settings.blend)
+    message = ""
+    for attempt in _smaller_and_smaller(sizes):
+        curves = smooth_curves(path, attempt, checker.sweep.weights)
+        motion = _joined([_timed(c, limits, checker, settings) for c in curves])
+        hit = _first_collision(motion, checker)
+        if hit is None:
+            stops = len(curves) - 1
+            message = f"{motion.duration:.2f} s with {stops} stops"
+            return TimingResult(motion, message, stops, checker.states)
+        message = f"the timed motion collides: {contact_names(world, hit)}"
+    return TimingResult(None, message, states=checker.states)
+
+
+def _smaller_and_smaller(sizes: Array) -> Iterator[Array]:
+    """The blends as they are, halved and halved again, and none."""
+    for halvings in range(HALVINGS + 1):
+        yield sizes * 0.5**halvings
+    yield np.zeros_like(sizes)
+
+
+def _without_repeats(path: Array) -> Array:
+    moves = np.any(np.diff(path, axis=0), axis=1)
+    kept: Array = path[np.concatenate([[True], moves])]
+    return kept
+
+
+def _timed(
+    curve: SmoothCurve,
+    limits: MotionLimits,
+    checker: PathChecker,
+    settings: TimingSettings,
+) -> TimedPath:
+    """The motion along one curve, sampled so densely that it follows the curve."""
+    rough = SpeedProfile.fastest(curve, even_in_length(curve), limits)
+    rate = settings.rate
+    for _ in range(DOUBLINGS + 1):
+        grid = even_in_time(curve, rough, rate)
+        profile = SpeedProfile.fastest(curve, grid, limits)
+        velocities = curve(grid, 1) * profile.speeds[:, None]
+        motion = TimedPath(profile.times, curve(grid), velocities)
+        amid = (motion.times[:-1] + motion.times[1:]) / 2.0
+        off = motion.curve.positions(amid) - curve(profile.at(amid))
+        if checker.sweep.distance(off).max() <= settings.deviation:
+            break
+        rate *= 2.0
+    return _within(motion, limits)
+
+
+def _within(motion: TimedPath, limits: MotionLimits) -> TimedPath:
+    """The motion with its time stretched evenly so that all limits just hold."""
+    hardest = motion.curve.acceleration_extremes().magnitude
+    velocity = float((motion.fastest() / limits.velocity).max())
+    acceleration = float((hardest / limits.acceleration).max())
+    return motion.stretched(SLACK * max(velocity, np.sqrt(acceleration)))
+
+
+def _joined(motions: list[TimedPath]) -> TimedPath:
+    """One motion after the other; each begins where and as the last one ended."""
+    starts = np.cumsum([0.0, *(m.duration for m in motions)])
+    times = [m.times[i > 0 :] + starts[i] for i, m in enumerate(motions)]
+    positions = [m.positions[i > 0 :] for i, m in enumerate(motions)]
+    velocities = [m.velocities[i > 0 :] for i, m in enumerate(motions)]
+    return TimedPath(
+        read_only(np.concatenate(times)),
+        read_only(np.concatenate(positions)),
+        read_only(np.concatenate(velocities)),
+    )
+
+
+def _first_collision(motion: TimedPath, checker: PathChecker) -> Array | None:
+    """Where the motion collides first (nq,), None if it nowhere does."""
+    steps = np.diff(motion.times)
+    piece, fraction = even_fractions(checker.steps(motion.fastest() * steps[:, None]))
+    q = motion.curve.positions(motion.times[piece] + fraction * steps[piece])
+    hit = checker.first_hit(q)
+    return None if hit is None else q[hit]

@@ -1,0 +1,55 @@
+"""What planning needs to know of the world: the narrow side of a collision world."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+
+from mmplan.shapes import Array
+
+
+class Touch(Protocol):
+    """Two things that overlap, by name."""
+
+    @property
+    def first(self) -> str:
+        """The one."""
+
+    @property
+    def second(self) -> str:
+        """The other."""
+
+
+class PlanningWorld(Protocol):
+    """A robot among things that it must not touch.
+
+    Bodies of `geometry` whose `parentJoint` is not 0 move with the robot, a carried
+    object among them.
+    """
+
+    @property
+    def model(self) -> pin.Model:
+        """The robot's kinematic model, every joint of one degree of freedom."""
+
+    @property
+    def geometry(self) -> pin.GeometryModel:
+        """Every body of the world."""
+
+    def in_collision(self, q: Array) -> npt.NDArray[np.bool_]:
+        """Which of the configurations (n, nq) are in collision, (n,)."""
+
+    def any_collision(self, q: Array) -> bool:
+        """Whether any of the configurations (n, nq) is in collision."""
+
+    def contacts(self, q: Array) -> Sequence[Touch]:
+        """What overlaps at one configuration (nq,), worst first."""
+
+
+def contact_names(world: PlanningWorld, q: Array) -> str:
+    """`forearm touches counter, hand touches wineglass` at one configuration (nq,)."""
+    touches = [f"{c.first} touches {c.second}" for c in world.contacts(q)]
+    return ", ".join(touches) or "in collision"
