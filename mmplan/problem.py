@@ -6,11 +6,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mmplan.shapes import Array, Fixture, Shape
-
 if TYPE_CHECKING:
     from mmplan.grasps import GraspFamily
     from mmplan.robot import Robot
+    from mmplan.shapes import Array, Fixture, Shape
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,108 @@
+"""From a well-formed scene file to a problem that can be computed with."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mmplan.files.scene_sections import (
+    BoundsSection,
+    ObjectSection,
+    ObstacleSection,
+    SceneSection,
+    StartSection,
+)
+from mmplan.problem import Object, Obstacle, Problem, Task
+from mmplan.robot import Robot
+from mmplan.robot_build import build_robot
+from mmplan.scene_reader import SceneFile
+from mmplan.scene_values import grasps, pose, shape
+from mmplan.shapes import Array, Fixture, read_only
+
+BOUNDS_MARGIN = 1.5  # of the robot's reach, around the start and all poses
+
+
+def build_problem(scene: SceneFile) -> Problem:
+    """The problem of a scene, whose geometry is not checked yet.
+
+    Raises:
+        InputError: The robot's model cannot be built.
+    """
+    section = scene.section
+    robot = build_robot(scene.robot)
+    return Problem(
+        name=section.name,
+        robot=robot,
+        q_start=_start(robot, section.robot.start),
+        base_bounds=_base_bounds(robot, section),
+        obstacles=tuple(
+            _obstacle(scene, name, o) for name, o in section.obstacles.items()
+        ),
+        objects=tuple(_object(scene, name, o) for name, o in section.objects.items()),
+        tasks=_tasks(section),
+        score=section.score.settings(),
+        optimizer=section.optimizer.settings(),
+        planner=section.planner.settings(),
+        path=scene.document.path,
+        fingerprint=scene.fingerprint(),
+    )
+
+
+def _start(robot: Robot, start: StartSection) -> Array:
+    """The start configuration (nq,); joints of no group are at 0."""
+    hand = {"open": robot.hand_open, "closed": robot.hand_closed}
+    q = np.zeros(robot.model.nq)
+    q[robot.base.indices] = start.base
+    q[robot.arm.indices] = _named(start.arm, robot.configurations)
+    q[robot.hand.indices] = _named(start.hand, hand)
+    return read_only(q)
+
+
+def _named(value: str | tuple[float, ...], known: dict[str, Array]) -> Array:
+    return known[value] if isinstance(value, str) else np.array(value)
+
+
+def _base_bounds(robot: Robot, section: SceneSection) -> Array:
+    """Where the base may go, (base joints, 2), within its joint limits.
+
+    Where the scene says nothing: the box around the start and all poses, grown by
+    `BOUNDS_MARGIN` times the robot's reach.
+    """
+    poses = [o.at for o in section.objects.values()] + [t.to for t in section.tasks]
+    points = np.array([section.robot.start.base, *(p.xyz[:2] for p in poses)])
+    margin = BOUNDS_MARGIN * robot.reach
+    bounds = np.stack(
+        [points.min(axis=0) - margin, points.max(axis=0) + margin], axis=1
+    )
+    for axis, given in enumerate(_given(section.robot.bounds)):
+        if given is not None:
+            bounds[axis] = given
+    limits = np.stack([robot.base.lower, robot.base.upper], axis=1)
+    return read_only(np.clip(bounds, limits[:, :1], limits[:, 1:]))
+
+
+def _given(bounds: BoundsSection) -> Sequence[tuple[float, float] | None]:
+    return (bounds.x, bounds.y)
+
+
+def _obstacle(scene: SceneFile, name: str, section: ObstacleSection) -> Obstacle:
+    if section.urdf is not None:
+        configuration = tuple(section.configuration.items())
+        fixture = Fixture(scene.folder / section.urdf, configuration)
+        return Obstacle(name, fixture, pose(section.at), section.ground)
+    solid = shape(section, scene.folder)
+    return Obstacle(name, solid, pose(section.at), section.ground)
+
+
+def _object(scene: SceneFile, name: str, section: ObjectSection) -> Object:
+    solid = shape(section, scene.folder)
+    families = {n: grasps(g, solid) for n, g in section.grasps.items()}
+    return Object(name, solid, pose(section.at), families)
+
+
+def _tasks(section: SceneSection) -> tuple[Task, ...]:
+    return tuple(
+        Task(t.move, pose(t.to), t.approach, t.lift, t.lower, t.retreat)
+        for t in section.tasks
+    )
