@@ -8,20 +8,43 @@ import pinocchio as pin
 from mmplan.shapes import Array
 
 
-def joint_placements(model: pin.Model, q: Array) -> Array:
-    """Poses T_world_joint (n, njoints, 4, 4) of all joints at q (n, nq).
+class ForwardKinematics:
+    """Poses of all joints for many configurations in one call.
 
     The same as Pinocchio's `forwardKinematics` and `data.oMi`, for models whose joints
-    all have one degree of freedom, one call for all configurations.
+    all have one degree of freedom. A joint's pose in its parent's frame is linear in
+    (1, sin q, cos q, q), with four matrices for each joint that are made once.
     """
-    placements = np.empty((len(q), model.njoints, 4, 4))
-    placements[:, 0] = np.eye(4)
-    for joint in range(1, model.njoints):
-        fixed = model.jointPlacements[joint].homogeneous
-        moved = _joint_motion(model, joint, q[:, model.joints[joint].idx_q])
-        parent = placements[:, model.parents[joint]]
-        placements[:, joint] = parent @ (fixed @ moved)
-    return placements
+
+    def __init__(self, model: pin.Model) -> None:
+        """Prepare for a model.
+
+        Raises:
+            ValueError: A joint has more than one degree of freedom.
+        """
+        joints = range(1, model.njoints)
+        self._parents = [int(model.parents[j]) for j in joints]
+        self._places = [int(model.joints[j].idx_q) for j in joints]
+        bases = [_motion_basis(model, j) for j in joints]
+        self._basis = np.array(bases).reshape(len(bases), 4, 16)
+
+    def __call__(self, q: Array) -> Array:
+        """Poses T_world_joint (n, njoints, 4, 4) at q (n, nq); joint 0 is the world."""
+        values = q[:, self._places].T  # (joints, n)
+        terms = np.stack(
+            [np.ones_like(values), np.sin(values), np.cos(values), values], axis=2
+        )
+        relative = (terms @ self._basis).reshape(*values.shape, 4, 4)
+        placements = np.empty((len(self._parents) + 1, len(q), 4, 4))
+        placements[0] = np.eye(4)
+        for joint, parent in enumerate(self._parents, start=1):
+            np.matmul(placements[parent], relative[joint - 1], out=placements[joint])
+        return placements.transpose(1, 0, 2, 3)
+
+
+def joint_placements(model: pin.Model, q: Array) -> Array:
+    """Poses T_world_joint (n, njoints, 4, 4) at q (n, nq), for a call now and then."""
+    return ForwardKinematics(model)(q)
 
 
 def tool_jacobians(model: pin.Model, frame: int, q: Array, columns: Array) -> Array:
@@ -34,18 +57,6 @@ def tool_jacobians(model: pin.Model, frame: int, q: Array, columns: Array) -> Ar
     return J
 
 
-def _joint_motion(model: pin.Model, joint: int, values: Array) -> Array:
-    """The transforms (n, 4, 4) of one joint at its values (n,)."""
-    linear, angular = np.split(motion_axis(model, joint), 2)
-    T = np.zeros((len(values), 4, 4))
-    T[:, 3, 3] = 1.0
-    T[:, :3, 3] = values[:, None] * linear
-    K = pin.skew(angular)
-    sin, cos = np.sin(values)[:, None, None], np.cos(values)[:, None, None]
-    T[:, :3, :3] = np.eye(3) + (sin * K + (1.0 - cos) * (K @ K) if K.any() else 0.0)
-    return T
-
-
 def motion_axis(model: pin.Model, joint: int) -> Array:
     """The twist (linear, angular) of a joint of one degree of freedom, (6,)."""
     data = model.joints[joint].createData()
@@ -54,3 +65,21 @@ def motion_axis(model: pin.Model, joint: int) -> Array:
     if subspace.shape[1] != 1:
         raise ValueError(f"joint {model.names[joint]} has more than one freedom")
     return subspace[:, 0]
+
+
+def _motion_basis(model: pin.Model, joint: int) -> Array:
+    """A (4, 4, 4): T_parent_joint = A[0] + A[1] sin q + A[2] cos q + A[3] q.
+
+    For a turn about the unit axis with cross-product matrix K the rotation is
+    (I + K K) + K sin q - K K cos q (Rodrigues).
+    """
+    linear, angular = np.split(motion_axis(model, joint), 2)
+    K = pin.skew(angular)
+    basis = np.zeros((4, 4, 4))
+    basis[0, :3, :3] = np.eye(3) + K @ K
+    basis[0, 3, 3] = 1.0
+    basis[1, :3, :3] = K
+    basis[2, :3, :3] = -K @ K
+    basis[3, :3, 3] = linear
+    fixed: Array = model.jointPlacements[joint].homogeneous
+    return fixed @ basis

@@ -35,6 +35,6 @@ def local_bounds(geometry: coal.CollisionGeometry) -> Bounds:
 
 def moved_bounds(local: Bounds, T: Array) -> Bounds:
     """Bounds in the world of boxes `local` (m, 3) moved by poses T (..., m, 4, 4)."""
-    rotation = T[..., :3, :3]
-    centre = np.einsum("...ij,...j->...i", rotation, local.centre) + T[..., :3, 3]
-    return Bounds(centre, np.einsum("...ij,...j->...i", np.abs(rotation), local.half))
+    R = T[..., :3, :3]
+    centre = (R @ local.centre[..., None])[..., 0] + T[..., :3, 3]
+    return Bounds(centre, (np.abs(R) @ local.half[..., None])[..., 0])

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import coal
 import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
 from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
+from mmplan.collision.requests import make_exact
 from mmplan.collision.world import CollisionWorld
-from mmplan.kinematics import joint_placements
+from mmplan.kinematics import ForwardKinematics
 from mmplan.shapes import Array
-
-# Distances are exact to this, m.
-GJK_TOLERANCE = 1e-10
 
 
 class LinkDistances:
@@ -33,6 +30,7 @@ class LinkDistances:
         """Prepare the distances in a world; later changes of it are not seen."""
         bodies = world.bodies
         self._model = world.model
+        self._kinematics = ForwardKinematics(world.model)
         self._geometry = world.geometry.clone()
         self._robot_bodies = [i for i, b in enumerate(bodies) if b.kind in _ROBOT]
         obstacles = [i for i, b in enumerate(bodies) if b.kind in _OBSTACLE]
@@ -42,10 +40,7 @@ class LinkDistances:
         self._pair = _add_pairs(self._geometry, bodies, self._robot_bodies, obstacles)
         self._data = self._model.createData()
         self._geometry_data = self._geometry.createData()
-        for request in self._geometry_data.distanceRequests:
-            request.gjk_initial_guess = coal.GJKInitialGuess.DefaultGuess
-            request.enable_cached_gjk_guess = False
-            request.gjk_tolerance = GJK_TOLERANCE
+        make_exact(self._geometry_data)
         self._body_bounds = _stack(self._geometry, self._robot_bodies)
         self._obstacle_bounds = moved_bounds(
             _stack(self._geometry, obstacles), _placements(self._geometry, obstacles)
@@ -73,7 +68,7 @@ class LinkDistances:
     def _gaps(self, q: Array, bodies: npt.NDArray[np.int64]) -> Array:
         """Lower bounds (n, bodies, obstacles) of distances, infinite for no pair."""
         joints = [self._body_joint[b] for b in bodies]
-        T = joint_placements(self._model, q)[:, joints] @ self._body_placement[bodies]
+        T = self._kinematics(q)[:, joints] @ self._body_placement[bodies]
         local = Bounds(*(part[bodies] for part in self._body_bounds))
         moved = moved_bounds(local, T)
         gaps = Bounds(*(part[:, :, None] for part in moved)).gap(self._obstacle_bounds)

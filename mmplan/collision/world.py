@@ -166,5 +166,5 @@ class CollisionWorld:
 
     @cached_property
     def _checker(self) -> Checker:
-        return Checker(self.model, self.geometry, self.allowed_depth)
+        return Checker(self.model, self._assembly)
 

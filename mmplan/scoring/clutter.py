@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from mmplan.collision import CollisionWorld, LinkDistances, local_bounds
-from mmplan.kinematics import joint_placements
+from mmplan.kinematics import ForwardKinematics
 from mmplan.robot import Robot
 from mmplan.scoring.outcome import End
 from mmplan.scoring.term import Grasped, RowCache
@@ -66,6 +66,7 @@ class LinkWeights:
     def __init__(self, robot: Robot) -> None:
         """Find the middle of each link and the base's centre of mass."""
         self._robot = robot
+        self._kinematics = ForwardKinematics(robot.model)
         bodies: dict[str, list[Array]] = {}
         self._joints: list[int] = []
         for body in robot.geometry.geometryObjects:
@@ -78,7 +79,7 @@ class LinkWeights:
 
     def __call__(self, q: Array) -> Array:
         """The weights w_l in 1/m at q (n, nq), (n, links)."""
-        T = joint_placements(self._robot.model, q)
+        T = self._kinematics(q)
         joints = T[:, self._joints]
         middles = np.einsum("nlij,lj->nli", joints[..., :3, :3], self._middles)
         middles += joints[..., :3, 3]

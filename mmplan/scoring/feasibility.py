@@ -20,24 +20,20 @@ from mmplan.shapes import Array
 Mask = npt.NDArray[np.bool_]
 
 
-class Holds(NamedTuple):
-    """Grasps of the object, ready for kinematics: one row for each."""
+class Arms(NamedTuple):
+    """All configurations of the robot, hand closed, that reach n grasps."""
 
-    T_object_tool: Array  # (n, 4, 4)
-    opened: Array  # (n, hand joints)
-    closed: Array  # (n, hand joints)
-    outcome: npt.NDArray[np.int8]  # NO_CONTACT, LOW_QUALITY or SCORED, (n,)
+    q: Array  # (n, branches, nq)
+    exists: Mask  # (n, branches)
+    within: Mask  # (n, branches), also within the joint limits
 
-
-class Feasible(NamedTuple):
-    """What came of n pairs of base and grasp, and the m configurations that are left.
-
-    `row` (m,) says which pair a configuration belongs to.
-    """
-
-    outcome: npt.NDArray[np.int8]  # (n,)
-    row: npt.NDArray[np.int64]  # (m,)
-    q: Array  # (m, nq), hand closed
+    @property
+    def outcome(self) -> npt.NDArray[np.int8]:
+        """NO_IK, JOINT_LIMITS or SCORED, (n,)."""
+        outcome = np.full(len(self.q), Outcome.NO_IK, np.int8)
+        outcome[self.exists.any(axis=1)] = Outcome.JOINT_LIMITS
+        outcome[self.within.any(axis=1)] = Outcome.SCORED
+        return outcome
 
 
 class Feasibility:
@@ -65,37 +61,30 @@ class Feasibility:
         outcome[outside] = Outcome.OUT_OF_BOUNDS
         return outcome
 
-    def __call__(self, q_base: Array, holds: Holds) -> Feasible:
-        """Test bases (n, b), already free by themselves, with grasps, row by row."""
-        q, exists, within = self._inverse_kinematics(q_base, holds)
-        outcome = np.full(len(q_base), Outcome.NO_IK, np.int8)
-        outcome[exists.any(axis=1)] = Outcome.JOINT_LIMITS
-        outcome[within.any(axis=1)] = Outcome.COLLISION
-        row, branch = np.nonzero(within)
-        closed = q[row, branch]
-        free = ~self._closed_world.in_collision(closed)
-        row, closed = row[free], closed[free]
-        outcome[row] = Outcome.HAND_OPEN_COLLISION
-        opened = closed.copy()
-        opened[:, self._robot.hand.indices] = holds.opened[row]
-        free = ~self._open_world.in_collision(opened)
-        row, closed = row[free], closed[free]
-        outcome[row] = Outcome.SCORED
-        return Feasible(outcome, row, closed)
+    def arms(self, q_base: Array, T_object_tool: Array) -> Arms:
+        """Solve bases (n, b) and tool poses (n, 4, 4) in the object's frame, in pairs.
 
-    def _inverse_kinematics(
-        self, q_base: Array, holds: Holds
-    ) -> tuple[Array, Mask, Mask]:
-        """All configurations (n, b, nq) that hold the object, and their masks (n, b)."""
+        The hand is as in the robot's neutral configuration.
+        """
         robot = self._robot
-        T_world_base = robot.base_poses(q_base)
-        T_base_tool = (
-            np.linalg.inv(T_world_base) @ self._T_world_object @ holds.T_object_tool
-        )
+        T_base_world = np.linalg.inv(robot.base_poses(q_base))
+        T_base_tool = T_base_world @ self._T_world_object @ T_object_tool
         solutions = robot.ik.solve(T_base_tool)
         n, branches = solutions.exists.shape
         q = np.tile(robot.q_neutral, (n, branches, 1))
         q[..., robot.base.indices] = q_base[:, None]
         q[..., robot.arm.indices] = solutions.q
-        q[..., robot.hand.indices] = holds.closed[:, None]
-        return q, solutions.exists, solutions.within
+        return Arms(q, solutions.exists, solutions.within)
+
+    def outcomes(self, q: Array, opened: Array) -> npt.NDArray[np.int8]:
+        """COLLISION, HAND_OPEN_COLLISION or SCORED for configurations q (m, nq), (m,).
+
+        `opened` (m, hand joints) is the hand before it closes.
+        """
+        outcome = np.full(len(q), Outcome.COLLISION, np.int8)
+        free = np.flatnonzero(~self._closed_world.in_collision(q))
+        q_open = q[free]
+        q_open[:, self._robot.hand.indices] = opened[free]
+        hit = self._open_world.in_collision(q_open)
+        outcome[free] = np.where(hit, Outcome.HAND_OPEN_COLLISION, Outcome.SCORED)
+        return outcome

@@ -17,10 +17,10 @@ class Outcome(IntEnum):
 
     OUT_OF_BOUNDS = 0  # the base is outside of where it may go
     BASE_COLLISION = 1  # the base alone hits something
-    NO_CONTACT = 2  # the hand does not close on the object
-    LOW_QUALITY = 3  # the grasp quality is below the threshold
-    NO_IK = 4  # the arm does not reach the grasp
-    JOINT_LIMITS = 5  # it does, but only beyond its joint limits
+    NO_IK = 2  # the arm does not reach the grasp
+    JOINT_LIMITS = 3  # it does, but only beyond its joint limits
+    NO_CONTACT = 4  # the hand does not close on the object
+    LOW_QUALITY = 5  # the grasp quality is below the threshold
     COLLISION = 6  # the robot hits something with the hand closed
     HAND_OPEN_COLLISION = 7  # only the opened hand does
     SCORED = 8

@@ -11,7 +11,7 @@ from mmplan.collision import CollisionWorld, HandCloser
 from mmplan.grasps import GraspFamily
 from mmplan.problem import Problem, Task
 from mmplan.scoring.clutter import Clutter
-from mmplan.scoring.feasibility import Feasibility, Holds
+from mmplan.scoring.feasibility import Arms, Feasibility
 from mmplan.scoring.grasp_quality import grasp_quality
 from mmplan.scoring.manipulability import Manipulability
 from mmplan.scoring.outcome import End, Outcome
@@ -36,6 +36,15 @@ class Scores(NamedTuple):
     outcome: npt.NDArray[np.int8]  # (n,) of Outcome
 
 
+class Holds(NamedTuple):
+    """How the hand holds the object in n grasps."""
+
+    T_object_tool: Array  # (n, 4, 4)
+    opened: Array  # (n, hand joints), before it closes
+    closed: Array  # (n, hand joints), on the object
+    outcome: npt.NDArray[np.int8]  # NO_CONTACT, LOW_QUALITY or SCORED, (n,)
+
+
 class ScoreFunction:
     """The score of the paper's section IV.A for one task.
 
@@ -56,7 +65,7 @@ class ScoreFunction:
             End.GOAL: world.place(task.object, task.T_world_goal),
         }
         robot = problem.robot
-        self._feasible = {
+        self._feasibility = {
             end: Feasibility(problem, w, task.object) for end, w in self.worlds.items()
         }
         self._closer = HandCloser(robot, world.scenery.objects[task.object])
@@ -108,7 +117,7 @@ class ScoreFunction:
         """What is known of bases (n, b) without any grasp, (n,) of Outcome."""
         rows = self._bases[end].rows(
             list(_keys(q_base)),
-            lambda new: self._feasible[end].base_outcomes(q_base[new])[:, None],
+            lambda new: self._feasibility[end].base_outcomes(q_base[new])[:, None],
         )
         return rows[:, 0].astype(np.int8)
 
@@ -131,25 +140,44 @@ class ScoreFunction:
 
     def _evaluate(self, end: End, q_base: Array, grasps: Array) -> Array:
         """The rows of `_scores`: total, terms, q, outcome."""
-        n, nq = len(q_base), self.problem.robot.model.nq
-        holds = self.holds(grasps)
-        outcome = np.minimum(self.base_outcomes(end, q_base), holds.outcome)
-        tried = np.flatnonzero(outcome == Outcome.SCORED)
-        feasible = self._feasible[end](
-            q_base[tried], Holds(*(part[tried] for part in holds))
-        )
-        outcome[tried] = feasible.outcome
-        row = tried[feasible.row]
-        terms = self._terms(end, q_base[row], grasps[row], feasible.q)
+        outcome, row, q = self._feasible_configurations(end, q_base, grasps)
+        terms = self._terms(end, q_base[row], grasps[row], q)
         totals = terms.sum(axis=1)
         best = _best_of_each(row, totals)
-        result = np.zeros((n, 4 + nq + 1))
+        nq = self.problem.robot.model.nq
+        result = np.zeros((len(q_base), 4 + nq + 1))
         result[:, 4:-1] = np.nan
         result[row[best], 0] = totals[best]
         result[row[best], 1:4] = terms[best]
-        result[row[best], 4:-1] = feasible.q[best]
+        result[row[best], 4:-1] = q[best]
         result[:, -1] = outcome
         return result
+
+    def _feasible_configurations(
+        self, end: End, q_base: Array, grasps: Array
+    ) -> tuple[npt.NDArray[np.int8], npt.NDArray[np.int64], Array]:
+        """The outcome of each pair (n,), and all feasible configurations (m, nq).
+
+        In between comes the row (m,) that each configuration belongs to. Tests come in
+        the order of `Outcome`, each on what the tests before it have left.
+        """
+        feasibility = self._feasibility[end]
+        outcome = self.base_outcomes(end, q_base)
+        left = np.flatnonzero(outcome == Outcome.SCORED)
+        arms = feasibility.arms(q_base[left], self.family.tool_poses(grasps[left]))
+        outcome[left] = arms.outcome
+        reached = arms.within.any(axis=1)
+        arms, left = Arms(*(part[reached] for part in arms)), left[reached]
+        holds = self.holds(grasps[left])
+        outcome[left] = holds.outcome
+        row, branch = np.nonzero(arms.within & (holds.outcome == Outcome.SCORED)[:, None])
+        q = arms.q[row, branch]
+        q[:, self.problem.robot.hand.indices] = holds.closed[row]
+        found = feasibility.outcomes(q, holds.opened[row])
+        outcome[left[row]] = Outcome.COLLISION
+        np.maximum.at(outcome, left[row], found)
+        free = found == Outcome.SCORED
+        return outcome, left[row[free]], q[free]
 
     def _terms(self, end: End, q_base: Array, grasps: Array, q: Array) -> Array:
         """The weighted terms (m, 3) of feasible configurations q (m, nq)."""
