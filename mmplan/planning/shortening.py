@@ -7,8 +7,8 @@ import numpy as np
 from mmplan.planning.checking import PathChecker
 from mmplan.shapes import Array
 
-# A shortcut is kept if it saves more than this length, m.
-MIN_GAIN = 1e-4
+# A shortcut is worth its checks if it saves more than this share of the path's length.
+MIN_GAIN = 0.01
 
 
 def shorten(
@@ -61,7 +61,7 @@ def _try_shortcut(
         return path
     old = np.vstack([q_i, path[i + 1 : j + 1], q_j])
     new = np.vstack([q_i, q_j]) if joint is None else _straightened(old, weights, joint)
-    if path_length(old, weights) - path_length(new, weights) < MIN_GAIN:
+    if path_length(old, weights) - path_length(new, weights) < MIN_GAIN * along[-1]:
         return path
     if not checker.path_free(new):
         return path
