@@ -6,6 +6,7 @@ from typing import Any
 
 from mmplan import assets
 from mmplan.files.scene_sections import SCENE_VERSION, SceneSection
+from mmplan.files.shape_sections import SHAPES
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -17,6 +18,10 @@ def scene_schema() -> dict[str, Any]:
     robot["anyOf"] = [{"enum": list(assets.robot_names())}, {"type": robot.pop("type")}]
     start = schema["$defs"]["StartSection"]["properties"]
     start["hand"]["anyOf"] = _examples(start["hand"].pop("oneOf"), ["open", "closed"])
+    for name in ("ObstacleSection", "ObjectSection"):
+        section = schema["$defs"][name]
+        shapes = [s for s in SHAPES if s in section["properties"]]
+        section["oneOf"] = [{"required": [s]} for s in shapes]
     simplified: dict[str, Any] = _simplified(schema)
     return {
         "$schema": DIALECT,
@@ -32,7 +37,8 @@ def _examples(forms: list[dict[str, Any]], names: list[str]) -> list[dict[str, A
 def _simplified(node: Any) -> Any:
     """The schema without titles, which repeat names, and without null.
 
-    Pydantic allows null where a key may be left out; in a file it is refused.
+    Pydantic allows null where a key may be left out; in a file it is refused, as are
+    names that do not match their pattern.
     """
     if isinstance(node, list):
         return [_simplified(item) for item in node]
@@ -45,11 +51,13 @@ def _simplified(node: Any) -> Any:
         kept = {**forms[0], **kept}
     elif forms:
         kept["anyOf"] = forms
+    if "patternProperties" in kept:
+        kept["additionalProperties"] = False
     return {k: _simplified(v) for k, v in kept.items()}
 
 
 def _is_noise(key: str, value: Any) -> bool:
-    """A title (not a property of that name), or null as a default."""
+    """A title (not a property of that name), or the default of a whole section."""
     return (key == "title" and isinstance(value, str)) or (
-        key == "default" and value is None
+        key == "default" and (value is None or isinstance(value, dict))
     )

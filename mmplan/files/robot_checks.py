@@ -41,7 +41,7 @@ def _unknown_accelerations(document: Document, urdf: Urdf) -> Iterator[Fault]:
     used = [n for g in GROUPS for n in _texts(document, (g, "joints"))]
     missing = [n for n in used if n in urdf.joints and n not in given]
     if given and missing:
-        message = f"no acceleration limit for joint '{missing[0]}'"
+        message = f"no limit for joint '{missing[0]}'"
         yield Fault(("acceleration",), message, at_key=True)
 
 

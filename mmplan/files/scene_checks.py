@@ -72,7 +72,7 @@ def _task_faults(document: Document) -> Iterator[Fault]:
         if not isinstance(name, str):
             continue
         moved.add(name)
-        if name not in objects:
+        if name not in objects and isinstance(document.get("objects"), dict):
             yield Fault(("tasks", i, "move"), unknown("object", name, objects))
     for name in objects:
         if name in moved and not document.get("objects", name, "grasps"):

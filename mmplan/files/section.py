@@ -105,7 +105,7 @@ def version(format_name: str, supported: int) -> BeforeValidator:
             return value
         raise fault(
             f"this mmplan reads version {supported} of the {format_name} format, "
-            f"got {value}"
+            f"got {value!r}"
         )
 
     return BeforeValidator(check)
