@@ -19,7 +19,8 @@ def profile_fault(profile: Sequence[Point]) -> str | None:
     for i, (a, b) in enumerate(_edges(profile)):
         if a == b:
             return f"point {i + 1} is repeated right after itself"
-    if all(abs(_turn(*profile[:2], c)) < SMALLEST_AREA for c in profile):
+    a, b = profile[0], profile[1]
+    if all(abs(_turn(a, b, c)) < SMALLEST_AREA for c in profile):
         return "the outline encloses no area: its points lie on a line"
     if crossing := _crossing(profile):
         i, j = crossing

@@ -24,8 +24,6 @@ PlannerName = Literal[
     "InformedRRTstar",
     "KPIECE1",
     "LBKPIECE1",
-    "PRM",
-    "PRMstar",
     "RRT",
     "RRTConnect",
     "RRTstar",
