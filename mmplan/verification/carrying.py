@@ -142,4 +142,4 @@ def _same(a: Array, b: Array) -> bool:
 
 
 def _amount(distance: float, angle: float) -> str:
-    return f"{distance * 1e3:.3g} mm and {np.degrees(angle):.3g}°"
+    return f"{distance * 1e3:.3g} mm and {round(np.degrees(angle), 3):g}°"

@@ -30,7 +30,7 @@ class Ledger:
     the earliest time and the smallest distance.
     """
 
-    nearest: Finding | None = None  # of what must stay apart
+    nearest: Finding | None = None  # the smallest distance of what must stay apart
     proven: float = np.inf  # m, the lowest lower bound of what was proven apart
     queries: int = 0
     intervals: int = 0
@@ -44,10 +44,9 @@ class Ledger:
             return np.inf
         return max(0.0, SHARPNESS * self.nearest.distance)
 
-    def note_distance(self, finding: Finding) -> None:
-        """Remember an exact distance of two things that must stay apart."""
-        if self.nearest is None or finding.distance < self.nearest.distance:
-            self.nearest = finding
+    def is_nearer(self, distance: float) -> bool:
+        """Whether a distance (m) is smaller than all before it."""
+        return self.nearest is None or distance < self.nearest.distance
 
     def note_overlap(self, finding: Finding) -> None:
         """Remember an overlap that is deeper than allowed."""

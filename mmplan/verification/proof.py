@@ -59,6 +59,10 @@ class _Open:
         """The middles of the stretches, (n,)."""
         return (self.start + self.end) / 2.0
 
+    def middle_of(self, stretch: np.int64) -> float:
+        """The middle of one stretch."""
+        return float(self.start[stretch] + self.end[stretch]) / 2.0
+
     def split(self, still: Mask) -> _Open:
         """Those that are `still` open, over both halves of their stretches."""
         used, stretch = np.unique(self.stretch[still], return_inverse=True)
@@ -140,7 +144,7 @@ class SegmentProof:
         undecided = unsettled & small & (slack <= 0.0) & ~overlap
         split = unsettled & ~small & ~overlap
         proven = slack[strict & ~(overlap | undecided | split)]
-        ledger.proven = min(ledger.proven, np.min(proven, initial=np.inf))
+        ledger.proven = min(ledger.proven, float(np.min(proven, initial=np.inf)))
         for k in np.flatnonzero(overlap):
             ledger.note_overlap(self._finding(pairs, margins, k))
         for k in np.flatnonzero(undecided):
@@ -192,8 +196,8 @@ class SegmentProof:
             margins.distance[k] = ask(stretch, self._first[pair], self._second[pair])
             margins.exact[k] = True
             ledger.queries += 1
-            if margins.allowed_now[k] == 0.0:
-                ledger.note_distance(self._finding(pairs, margins, k))
+            if margins.allowed_now[k] == 0.0 and ledger.is_nearer(margins.distance[k]):
+                ledger.nearest = self._finding(pairs, margins, k)
 
         if ledger.nearest is None:
             measure(np.argmin(margins.slack))
@@ -214,7 +218,7 @@ class SegmentProof:
             stage=self._stage,
             first=owners[self._first[pair]],
             second=owners[self._second[pair]],
-            time=float(pairs.middle[pairs.stretch[k]]),
+            time=pairs.middle_of(pairs.stretch[k]),
             distance=float(margins.distance[k]),
             allowed=float(margins.allowed_now[k]),
         )
@@ -235,9 +239,10 @@ class _Distances:
         return self._bodies.separation.distance(i, poses[0], j, poses[1])
 
     def _pose(self, moment: int, body: int) -> Any:
-        key = (moment, body)
+        bodies = self._bodies
+        joint = bodies.joints[body]
+        key = (moment if joint else -1, body)  # what no joint moves is always there
         if key not in self._poses:
-            bodies = self._bodies
-            T = self._T[moment, bodies.joints[body]] @ bodies.placements[body]
+            T = self._T[moment, joint] @ bodies.placements[body]
             self._poses[key] = bodies.separation.pose(T)
         return self._poses[key]

@@ -121,8 +121,8 @@ def _proof_faults(ledger: Ledger, stages: Sequence[Stage]) -> list[Fault]:
 def _overlap_fault(finding: Finding, place: str) -> Fault:
     depth, allowed = -finding.distance * 1e3, finding.allowed * 1e3
     message = (
-        f"{place}: {finding.first} and {finding.second} overlap by up to "
-        f"{depth:.3g} mm, first seen at t = {finding.time:.3f} s"
+        f"{place}: {finding.first} and {finding.second} overlap by {depth:.3g} mm or "
+        f"more, first seen at t = {finding.time:.3f} s"
     )
     if finding.allowed > 0.0:
         return Fault("touch", f"{message}; {allowed:g} mm is let pass")
