@@ -20,18 +20,25 @@ from mmplan.shapes import Array
 
 
 class Budget:
-    """Tells a planner when to stop; every time that it asks is one iteration."""
+    """Tells a planner when to stop; every time that it asks is one iteration.
 
-    def __init__(self, iterations: int, time_limit: float) -> None:
-        """Allow so many iterations and, as a safety net, so many seconds."""
-        self._allowed = iterations
-        self._deadline = time.monotonic() + time_limit
+    Planners that could go on improving a path stop at the first: it is shortened
+    anyway, and going on would be bounded by the clock sooner than by the counts.
+    """
+
+    def __init__(
+        self, settings: PlannerSettings, problem: ob.ProblemDefinition
+    ) -> None:
+        """Allow the settings' iterations and, as a safety net, their time limit."""
+        self._allowed = settings.iterations
+        self._deadline = time.monotonic() + settings.time_limit
+        self._problem = problem
         self.iterations = 0
         self.out_of_time = False
 
     def __call__(self) -> bool:
         """Whether the planner must stop."""
-        if self.iterations >= self._allowed:
+        if self.iterations >= self._allowed or self._problem.hasExactSolution():
             return True
         self.out_of_time = time.monotonic() > self._deadline
         self.iterations += not self.out_of_time
@@ -76,7 +83,7 @@ def search(
         planner = make_planner(settings.name, si)
         planner.setProblemDefinition(problem)
         planner.setup()
-        budget = Budget(settings.iterations, settings.time_limit)
+        budget = Budget(settings, problem)
         planner.solve(ob.PlannerTerminationCondition(budget))
         found = problem.hasExactSolution()
         start_tree, goal_tree = (0, 0) if found else _tree_sizes(planner, si)
@@ -116,6 +123,10 @@ def _problem(
         states.write(q, state)
         (problem.addStartState if i == 0 else goals.addState)(state)  # copies it
     problem.setGoal(goals)
+    # Any cost is good enough for the planners that look at it.
+    objective = ob.PathLengthOptimizationObjective(si)
+    objective.setCostThreshold(ob.Cost(float("inf")))
+    problem.setOptimizationObjective(objective)
     return problem
 
 

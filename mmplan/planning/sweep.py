@@ -97,11 +97,10 @@ def _lever_arms(model: pin.Model, axes: Array, joint: int, points: Array) -> Arr
                 np.maximum(squares - (points @ angular) ** 2, 0.0)
             ).max()
             arms[index] += radius
-        radius += np.sqrt(squares.max())
+        radius += float(np.sqrt(squares.max()))
         if linear.any():
-            lower = model.lowerPositionLimit[index]
-            upper = model.upperPositionLimit[index]
-            radius += max(abs(lower), abs(upper))
+            limits = model.lowerPositionLimit[index], model.upperPositionLimit[index]
+            radius += max(abs(float(limit)) for limit in limits)
         points = model.jointPlacements[joint].translation[None]
         joint = int(model.parents[joint])
     return arms

@@ -55,7 +55,7 @@ class StickWorld:
     def shrunk(self, by):
         """The same with every box thinner by that much on every side."""
         boxes = {
-            name: tuple(np.array(box) + [by, by, -by, -by])
+            name: tuple(np.add(box, [by, by, -by, -by]))
             for name, box in self.boxes.items()
         }
         return StickWorld(boxes, self.model, self.geometry)
@@ -100,11 +100,6 @@ def stick_joints():
     )
 
 
-@pytest.fixture
-def stick_limits():
-    return MotionLimits(np.array([0.8, 0.6, 1.5]), np.array([1.0, 2.0, 4.0]))
-
-
 @pytest.fixture(scope="session")
 def kitchen():
     """The problem of the shipped scene `wineglass`."""
@@ -114,3 +109,14 @@ def kitchen():
 @pytest.fixture(scope="session")
 def kitchen_world(kitchen):
     return CollisionWorld.of_problem(kitchen)
+
+
+@pytest.fixture(scope="session")
+def stick_world_class():
+    """`StickWorld` for tests that draw examples."""
+    return StickWorld
+
+
+@pytest.fixture(scope="session")
+def stick_limits():
+    return MotionLimits(np.array([0.8, 0.6, 1.5]), np.array([1.0, 2.0, 4.0]))

@@ -44,7 +44,7 @@ def test_an_edge_is_checked_at_its_end_and_counted(stick_among):
     world = stick_among(post=(0.9, -0.1, 1.1, 0.1))
     checker = PathChecker(world, RESOLUTION)
     free, hit = np.array([-1.0, 0.0, 0.0]), np.array([0.45, 0.0, 0.0])
-    assert checker.edge_free(free, free + [0.1, 0.0, 0.0])
+    assert checker.edge_free(free, free + np.array([0.1, 0.0, 0.0]))
     assert (checker.edges, checker.states) == (1, 5)
     assert not checker.edge_free(free, hit)
 
