@@ -114,17 +114,17 @@ def _joint_faults(
         yield f"acceleration: no value for joint '{name}'"
     joint = model.joints[model.getJointId(name)]
     if (joint.nq, joint.nv) == (1, 1):
-        yield from _limit_faults(model, name, joint.idx_q)
+        yield from _limit_faults(model, joint, name)
     else:
         yield f"joint '{name}' must have one degree of freedom and position limits"
 
 
-def _limit_faults(model: pin.Model, name: str, index: int) -> Iterator[str]:
-    lower = float(model.lowerPositionLimit[index])
-    upper = float(model.upperPositionLimit[index])
+def _limit_faults(model: pin.Model, joint: pin.JointModel, name: str) -> Iterator[str]:
+    lower = float(model.lowerPositionLimit[joint.idx_q])
+    upper = float(model.upperPositionLimit[joint.idx_q])
     if not (np.isfinite([lower, upper]).all() and lower < upper):
         yield f"joint '{name}' needs position limits in the URDF, lower below upper"
-    if not 0.0 < float(model.velocityLimit[index]) < np.inf:
+    if not 0.0 < float(model.velocityLimit[joint.idx_v]) < np.inf:
         yield f"joint '{name}' needs a velocity limit above 0 in the URDF"
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from benchmarks.score_scales import score_scales
 from mmplan.assets import robot_names, robots_folder
 from mmplan.robot import Robot
 from mmplan.robot_build import build_robot
@@ -188,6 +189,13 @@ def test_reach_is_that_of_the_stretched_arm(name: str) -> None:
         T_base_tool = data.oMi[base].inverse() * data.oMf[robot.tool_frame]
         farthest = max(farthest, np.hypot(*T_base_tool.translation[:2]))
     assert 0.9 * robot.reach < farthest <= robot.reach + 1e-3
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_score_scales_are_those_of_the_robot(name: str) -> None:
+    found, computed = loaded(name).score_scales, score_scales(loaded(name))
+    assert found.manipulability == pytest.approx(computed.manipulability, rel=0.01)
+    assert found.clutter == pytest.approx(computed.clutter, rel=0.01)
 
 
 def denavit_hartenberg(theta: Array) -> Array:
