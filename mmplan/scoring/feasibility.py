@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from mmplan.collision import CollisionWorld
+from mmplan.collision import CollisionWorld, Contact
 from mmplan.problem import Problem
 from mmplan.robot import Robot
 from mmplan.scoring.outcome import Outcome
@@ -52,8 +52,7 @@ class Feasibility:
 
     def base_outcomes(self, q_base: Array) -> npt.NDArray[np.int8]:
         """OUT_OF_BOUNDS, BASE_COLLISION or SCORED for base placements (n, b), (n,)."""
-        q = np.tile(self._robot.q_neutral, (len(q_base), 1))
-        q[:, self._robot.base.indices] = q_base
+        q = self._standing(q_base)
         outcome = np.full(len(q_base), Outcome.SCORED, np.int8)
         outcome[self._base_world.in_collision(q)] = Outcome.BASE_COLLISION
         low, high = self._bounds.T
@@ -88,3 +87,23 @@ class Feasibility:
         hit = self._open_world.in_collision(q_open)
         outcome[free] = np.where(hit, Outcome.HAND_OPEN_COLLISION, Outcome.SCORED)
         return outcome
+
+    def base_contacts(self, q_base: Array) -> tuple[Contact, ...]:
+        """What the base alone overlaps at (base joints,)."""
+        return self._base_world.contacts(self._standing(q_base[None])[0])
+
+    def least_contacts(self, q: Array, opened: Array) -> tuple[Contact, ...]:
+        """The overlaps of that configuration of q (m, nq) whose deepest is smallest."""
+        q_open = q.copy()
+        q_open[:, self._robot.hand.indices] = opened
+        found = [
+            self._closed_world.contacts(a) or self._open_world.contacts(b)
+            for a, b in zip(q, q_open, strict=True)
+        ]
+        return min((c for c in found if c), key=lambda c: c[0].depth, default=())
+
+    def _standing(self, q_base: Array) -> Array:
+        """Configurations (n, nq) with the base at (n, b) and all else neutral."""
+        q = np.tile(self._robot.q_neutral, (len(q_base), 1))
+        q[:, self._robot.base.indices] = q_base
+        return q

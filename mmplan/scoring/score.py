@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from mmplan.collision import CollisionWorld, HandCloser
+from mmplan.collision import CollisionWorld, Contact, HandCloser
 from mmplan.grasps import GraspFamily
 from mmplan.problem import Problem, Task
 from mmplan.scoring.clutter import Clutter
@@ -112,6 +112,21 @@ class ScoreFunction:
         return Holds(
             pose.reshape(-1, 4, 4), opened, closed, outcome[:, 0].astype(np.int8)
         )
+
+    def contacts(self, end: End, q_base: Array, grasp: Array) -> tuple[Contact, ...]:
+        """What one base (b,) and grasp (g,) collide with, in the best of all branches.
+
+        That is the branch whose deepest overlap is smallest; hand closed, or opened
+        where nothing else is in the way. Empty where no configuration is in collision.
+        """
+        feasibility = self._feasibility[end]
+        if self.base_outcomes(end, q_base[None])[0] == Outcome.BASE_COLLISION:
+            return feasibility.base_contacts(q_base)
+        hold = self.holds(grasp[None])
+        arms = feasibility.arms(q_base[None], hold.T_object_tool)
+        q = arms.q[arms.within]
+        q[:, self.problem.robot.hand.indices] = hold.closed[0]
+        return feasibility.least_contacts(q, hold.opened[0])
 
     def base_outcomes(self, end: End, q_base: Array) -> npt.NDArray[np.int8]:
         """What is known of bases (n, b) without any grasp, (n,) of Outcome."""

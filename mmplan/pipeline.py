@@ -1,0 +1,145 @@
+"""The method on one page: optimize both bases and the grasp, plan, prove."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+
+from mmplan.candidate import Candidate
+from mmplan.collision import CollisionWorld
+from mmplan.exceptions import NoPlanError, VerificationError
+from mmplan.failure import Attempt, failure_report
+from mmplan.grasps import GraspFamily, Mixture
+from mmplan.motion import Blocked, TaskMotion
+from mmplan.optimizers import OPTIMIZERS, Optimization, optimize, search_space
+from mmplan.plan import Plan, Segment, TaskEnd, TaskPlan
+from mmplan.plan_assembly import assemble_plan
+from mmplan.problem import Object, Problem
+from mmplan.scoring import End, ScoreFunction
+from mmplan.shapes import Array
+from mmplan.verification import examine
+
+class Progress(Protocol):
+    """Is told how far `solve` has come; `of` is None where the end is not known."""
+
+    def __call__(self, what: str, done: int, of: int | None) -> None:
+        """Take note of a stage's progress."""
+        ...
+
+
+def solve(problem: Problem, *, seed: int = 0, progress: Progress | None = None) -> Plan:
+    """Find grasps, base placements and a verified, timed motion for all tasks.
+
+    The same problem, seed and machine give the same plan.
+
+    Raises:
+        NoPlanError: No plan was found; the error carries the account.
+        VerificationError: The tasks are proven one by one, but not in a row.
+    """
+    report = progress or (lambda what, done, of: None)
+    seeds = np.random.SeedSequence(seed).spawn(len(problem.tasks))
+    rest, plans = problem, []
+    for number, sequence in enumerate(seeds):
+        rng = np.random.default_rng(sequence)
+        plan = _solve_task(replace(rest, tasks=(problem.tasks[number],)), number, seed, rng, report)
+        plans.append(plan)
+        rest = _after(rest, plan)
+    if len(plans) == 1:
+        return plans[0]
+    whole = assemble_plan(problem, [plan.tasks[0] for plan in plans], seed)
+    verification = examine(whole, problem)
+    if not verification.ok:
+        raise VerificationError(tuple(str(f) for f in verification.faults))
+    return replace(whole, verification=verification)
+
+
+def _solve_task(
+    problem: Problem, number: int, seed: int, rng: np.random.Generator, report: Progress
+) -> Plan:
+    """The verified plan of a problem with one task, the `number`th of the scene."""
+    task = problem.tasks[0]
+    world = CollisionWorld.of_problem(problem)
+    names, family = grasp_family(problem.object(task.object))
+    score = ScoreFunction(problem, task, world, family)
+    found = _optimize(score, rng, report)
+    motion = TaskMotion(problem, task, world)
+    attempts: list[Attempt] = []
+    for k, triple in enumerate(found.candidates):
+        report("planning", k, len(found.candidates))
+        candidate = Candidate.of_triple(triple, score)
+        segments = motion.plan(candidate, rng)
+        if isinstance(segments, Blocked):
+            attempts.append(Attempt(triple.total, segments))
+            continue
+        name = names[_family_number(family, triple.grasp)]
+        plan = assemble_plan(
+            problem, [_task_plan(task.object, name, candidate, segments)], seed
+        )
+        verification = examine(plan, problem)
+        if verification.ok:
+            return replace(plan, verification=verification)
+        fault = str(verification.faults[0])
+        attempts.append(Attempt(triple.total, Blocked("verification", fault)))
+    account = failure_report(number, score, found, tuple(attempts))
+    raise NoPlanError("\n".join(account.lines()), account)
+
+
+def _optimize(
+    score: ScoreFunction, rng: np.random.Generator, report: Progress
+) -> Optimization:
+    problem = score.problem
+    settings = problem.optimizer
+    optimizer = OPTIMIZERS[settings.name](search_space(score), settings, rng)
+    return optimize(
+        score,
+        optimizer,
+        settings.evaluations,
+        problem.planner.candidates,
+        lambda spent, best: report("optimization", spent, settings.evaluations),
+    )
+
+
+def grasp_family(item: Object) -> tuple[tuple[str, ...], GraspFamily]:
+    """The names of an object's grasp families and all of them as one family."""
+    families = tuple(item.grasps.values())
+    family = families[0] if len(families) == 1 else Mixture(families)
+    return tuple(item.grasps), family
+
+
+def _family_number(family: GraspFamily, genes: Array) -> int:
+    if isinstance(family, Mixture):
+        return int(family.family_of(genes[None])[0])
+    return 0
+
+
+def _task_plan(
+    name: str, grasp: str, candidate: Candidate, segments: tuple[Segment, ...]
+) -> TaskPlan:
+    start, goal = (
+        TaskEnd(candidate.triple.q_base[end], candidate.scores[end]) for end in End
+    )
+    return TaskPlan(
+        object=name,
+        grasp=grasp,
+        genes=candidate.triple.grasp,
+        T_object_tool=candidate.T_object_tool,
+        hand_open=candidate.opened,
+        hand_closed=candidate.closed,
+        start=start,
+        goal=goal,
+        segments=segments,
+    )
+
+
+def _after(problem: Problem, plan: Plan) -> Problem:
+    """The problem as a plan for its only task leaves it."""
+    task, q_end = plan.tasks[0], plan.tasks[0].segments[-1].positions[-1]
+    objects = tuple(
+        replace(o, T_world_object=problem.tasks[0].T_world_goal)
+        if o.name == task.object
+        else o
+        for o in problem.objects
+    )
+    return replace(problem, q_start=q_end, objects=objects)
