@@ -35,7 +35,7 @@ def find_scene(name: str | Path) -> Path:
     neither, the path comes back as it was given, for its reader to refuse.
     """
     path = Path(name)
-    if path.is_file():
+    if is_file(path):
         return path
     bare = str(name).removesuffix(".yaml")
     return scenes_folder() / f"{bare}.yaml" if bare in scene_names() else path
@@ -46,7 +46,15 @@ def find_robot(name: str, folder: Path) -> Path | None:
     if name in robot_names():
         return robots_folder() / name / ROBOT_FILE
     path = folder / name
-    return path if path.is_file() else None
+    return path if is_file(path) else None
+
+
+def is_file(path: Path) -> bool:
+    """Whether a file is there; never where the system refuses to look (a long name)."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
 
 
 def example_robots() -> Path | None:

@@ -71,7 +71,7 @@ def _urdf_location(
     here = document.path.parent.resolve()
     name = document.get("urdf")
     example = document.get("urdf", "example_robot_data")
-    if isinstance(name, str) and (here / name).is_file():
+    if isinstance(name, str) and assets.is_file(here / name):
         return here / name, (here, here.parent)
     if isinstance(example, str):
         return _example_location(example)
@@ -85,7 +85,7 @@ def _example_location(name: str) -> tuple[Path, tuple[Path, ...]] | Fault:
         message = "needs example-robot-data: pip install 'mmplan[robots]'"
         return Fault(path, message)
     urdf = share / "example-robot-data" / "robots" / name
-    if not urdf.is_file():
+    if not assets.is_file(urdf):
         return Fault(path, f"no such file in {urdf.parent.parent}: '{name}'")
     return urdf, (share,)
 

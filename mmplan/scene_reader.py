@@ -86,12 +86,20 @@ def read_scene(name: str | Path) -> SceneFile:
 
 def _document(name: str | Path) -> Document:
     path = assets.find_scene(name)
-    if not path.exists():
+    if _is_missing(path):
         shipped = assets.scene_names()
         guess = suggestion(path.stem, shipped) or ";"
         message = f"no such file{guess} scenes that are shipped: {listed(shipped)}"
         raise InputError(Diagnostic(message, file=str(path)))
     return read_document(path)
+
+
+def _is_missing(path: Path) -> bool:
+    """Whether nothing is there; where the system refuses to look, reading says why."""
+    try:
+        return not path.exists()
+    except OSError:
+        return False
 
 
 def _robot(

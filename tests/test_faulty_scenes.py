@@ -10,6 +10,8 @@ import re
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from mmplan.exceptions import InputError
 from mmplan.scene_reader import read_scene
@@ -93,3 +95,32 @@ def test_a_huge_file_is_refused_unread(tmp_path: Path) -> None:
 def test_a_misspelled_scene_is_guessed(tmp_path: Path) -> None:
     (diagnostic,) = faults_of(tmp_path / "wineglas.yaml").diagnostics
     assert diagnostic.message.startswith("no such file; did you mean 'wineglass'?")
+
+
+@pytest.mark.parametrize("key", ["mesh: {}.obj", "urdf: {}"])
+def test_a_name_that_no_file_can_have(tmp_path: Path, key: str) -> None:
+    text = (CORPUS / "missing_mesh.yaml").read_text()
+    path = tmp_path / "long.yaml"
+    path.write_text(text.replace("mesh: meshes/counter.obj", key.format("a" * 5000)))
+    (diagnostic,) = faults_of(path).diagnostics
+    assert "no such file" in diagnostic.message
+    assert "cannot be read" in str(faults_of(tmp_path / ("a" * 5000)))
+
+
+@given(
+    where=st.floats(0, 1),
+    length=st.integers(0, 12),
+    what=st.sampled_from(
+        ["", "[", "{", "&a ", "*a", "-1", "x", ": ", "\n", "1e9", "true"]
+    ),
+)
+def test_a_damaged_scene_loads_or_is_refused(
+    tmp_path_factory: pytest.TempPathFactory, where: float, length: int, what: str
+) -> None:
+    text = (CORPUS / "many_faults.yaml").read_text().partition("mmplan:")
+    scene = text[1] + text[2]
+    start = int(where * len(scene))
+    path = tmp_path_factory.getbasetemp() / "damaged.yaml"
+    path.write_text(scene[:start] + what + scene[start + length :])
+    for diagnostic in faults_of(path).diagnostics:
+        assert diagnostic.file

@@ -7,17 +7,30 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
+from mmplan.exceptions import Diagnostic, InputError
+
 
 def fingerprint(files: Mapping[str, Path]) -> str:
     """SHA-256 over the contents of files, each under the role that it plays.
 
     Where the files lie does not count, nor does the order of the mapping.
+
+    Raises:
+        InputError: A file cannot be read.
     """
     total = hashlib.sha256()
     for role, path in sorted(_with_buffers(files).items()):
-        content = hashlib.sha256(path.read_bytes()).hexdigest()
+        content = hashlib.sha256(_read(path)).hexdigest()
         total.update(f"{role}\0{content}\n".encode())
     return total.hexdigest()
+
+
+def _read(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        message = f"cannot be read: {error.strerror}"
+        raise InputError(Diagnostic(message, file=str(path))) from None
 
 
 def _with_buffers(files: Mapping[str, Path]) -> dict[str, Path]:
@@ -32,7 +45,7 @@ def _with_buffers(files: Mapping[str, Path]) -> dict[str, Path]:
 
 def _buffers(path: Path) -> list[str]:
     try:
-        buffers = json.loads(path.read_bytes()).get("buffers", [])
+        buffers = json.loads(_read(path)).get("buffers", [])
     except (ValueError, AttributeError):
         return []  # not glTF: refused where its triangles are read
     names = [b.get("uri", "") for b in buffers]

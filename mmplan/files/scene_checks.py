@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from mmplan.assets import is_file
 from mmplan.files.document import Document, Fault, KeyPath
 from mmplan.files.robot_checks import joint_value_faults
 from mmplan.files.suggestions import unknown
@@ -96,7 +97,7 @@ def _fixture_faults(document: Document, path: KeyPath) -> Iterator[Fault]:
     if not isinstance(name, str):
         return
     file = document.path.parent / name
-    if not file.is_file():
+    if not is_file(file):
         return
     try:
         urdf = read_urdf(file, package_folders(file))

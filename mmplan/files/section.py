@@ -17,6 +17,8 @@ from pydantic import (
 )
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
+from mmplan.assets import is_file
+
 LONGEST = 1e4  # m: nothing in a scene is farther or larger
 FULL_TURN = 2 * math.pi + 0.01  # rad, with room for rounding
 _NAME = r"^[A-Za-z][A-Za-z0-9_-]*$"
@@ -117,9 +119,7 @@ def _existing_file(value: str, info: ValidationInfo) -> str:
     if folder is None:
         return value
     path = Path(folder) / value
-    if path.is_dir():
-        raise fault(f"'{value}' is a folder, not a file")
-    if not path.is_file():
+    if not is_file(path):
         raise fault(f"no such file: '{value}', sought at {path}")
     return value
 
