@@ -49,6 +49,8 @@ class RowCache:
 
         `compute` gets the places in `keys` of those that are new, each key once.
         """
+        if not keys:
+            return compute(np.empty(0, np.int64))  # (0, d)
         new = {k: i for i, k in enumerate(keys) if k not in self._rows}
         if new:
             computed = compute(np.fromiter(new.values(), np.int64, len(new)))
