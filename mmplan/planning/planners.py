@@ -11,10 +11,6 @@ from mmplan.files.suggestions import unknown
 # The longest edge that a planner adds to its tree or graph, m.
 RANGE = 1.5
 
-# They look for the solution in a second thread, which waits for ever for the Python
-# interpreter that the first one holds; and when it finds one depends on the clock.
-_THREADED = frozenset({"PRM", "PRMstar"})
-
 
 def available_planners() -> tuple[str, ...]:
     """The names that `make_planner` knows."""
@@ -22,7 +18,6 @@ def available_planners() -> tuple[str, ...]:
         name
         for name, value in sorted(vars(og).items())
         if isinstance(value, type) and issubclass(value, ob.Planner)
-        if name not in _THREADED
     )
 
 

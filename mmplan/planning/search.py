@@ -9,11 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from ompl import base as ob
+from ompl import geometric as og
 from ompl import util as ou
 
 from mmplan.planning.checking import PathChecker
 from mmplan.planning.joints import MovingJoints
 from mmplan.planning.planners import make_planner
+from mmplan.planning.roadmap import search_roadmap
 from mmplan.planning.state_space import ScaledStates, space_information
 from mmplan.problem import PlannerSettings
 from mmplan.shapes import Array
@@ -84,11 +86,15 @@ def search(
         planner.setProblemDefinition(problem)
         planner.setup()
         budget = Budget(settings, problem)
-        planner.solve(ob.PlannerTerminationCondition(budget))
-        found = problem.hasExactSolution()
+        if isinstance(planner, og.PRM):
+            way = search_roadmap(planner, si, budget, len(q_goals))
+        else:
+            planner.solve(ob.PlannerTerminationCondition(budget))
+            way = _solution(problem, states)
+        found = way is not None
         start_tree, goal_tree = (0, 0) if found else _tree_sizes(planner, si)
         return Search(
-            waypoints=_waypoints(problem, states) if found else None,
+            waypoints=None if way is None else states.configurations(way),
             iterations=budget.iterations,
             out_of_time=budget.out_of_time,
             gap=0.0 if found else _gap(problem, states.scaled(ends)),
@@ -130,9 +136,12 @@ def _problem(
     return problem
 
 
-def _waypoints(problem: ob.ProblemDefinition, states: ScaledStates) -> Array:
+def _solution(problem: ob.ProblemDefinition, states: ScaledStates) -> Array | None:
+    """The scaled states (n, dimension) of the path found, if one was."""
+    if not problem.hasExactSolution():
+        return None
     path = problem.getSolutionPath().getStates()
-    return np.array([states.configuration(state) for state in path])
+    return np.array([state[0 : states.dimension] for state in path])
 
 
 def _gap(problem: ob.ProblemDefinition, ends: Array) -> float:

@@ -33,8 +33,13 @@ class ScaledStates:
 
     def configuration(self, state: ob.State) -> Array:
         """The configuration (nq,) of a state."""
-        q = self._q_still.copy()
-        q[self._indices] = np.array(state[0 : self.dimension]) / self._weights
+        q: Array = self.configurations(np.array([state[0 : self.dimension]]))[0]
+        return q
+
+    def configurations(self, scaled: Array) -> Array:
+        """The configurations (n, nq) of coordinates (n, dimension)."""
+        q = np.tile(self._q_still, (len(scaled), 1))
+        q[:, self._indices] = scaled / self._weights
         return q
 
     def scaled(self, q: Array) -> Array:

@@ -20,6 +20,8 @@ from mmplan.shapes import Array, read_only
 HALVINGS = 3
 # How often samples are made twice as dense.
 DOUBLINGS = 3
+# Waypoints nearer to each other than this are one, m.
+SAME_PLACE = 1e-7
 # A hair of slack, so that limits hold in any order of evaluation.
 SLACK = 1.0 + 1e-9
 
@@ -94,10 +96,10 @@ def time_path(
     Raises:
         ValueError: if the path does not move.
     """
-    path = _without_repeats(path)
+    checker = PathChecker(world, resolution)
+    path = _without_repeats(path, checker.sweep.weights)
     if len(path) < 2:
         raise ValueError("a path that does not move has no timing")
-    checker = PathChecker(world, resolution)
     sizes = blend_sizes(path, checker, settings.blend)
     message = ""
     for attempt in _smaller_and_smaller(sizes):
@@ -119,9 +121,11 @@ def _smaller_and_smaller(sizes: Array) -> Iterator[Array]:
     yield np.zeros_like(sizes)
 
 
-def _without_repeats(path: Array) -> Array:
-    moves = np.any(np.diff(path, axis=0), axis=1)
-    kept: Array = path[np.concatenate([[True], moves])]
+def _without_repeats(path: Array, weights: Array) -> Array:
+    """The path less waypoints that coincide with the one before, its ends as given."""
+    steps = np.linalg.norm(np.diff(path, axis=0) * weights, axis=1)
+    kept: Array = path[np.append(True, steps > SAME_PLACE)]
+    kept[-1] = path[-1]
     return kept
 
 
