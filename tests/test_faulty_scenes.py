@@ -14,10 +14,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmplan.exceptions import InputError
+from mmplan.scene_file import load_problem
 from mmplan.scene_reader import read_scene
 
 CORPUS = Path(__file__).parent / "faulty"
-SCENES = sorted(CORPUS.glob("*.yaml"))
+SCENES = sorted(CORPUS.glob("*.yaml"))  # that need no geometry to be refused
+GEOMETRY = sorted((CORPUS / "geometry").glob("*.yaml"))
 EXPECTATION = re.compile(r"# expect: (?:(\S+\.yaml):)?(\d+):(\d+): (.*)")
 
 
@@ -40,7 +42,21 @@ def expectations(path: Path) -> list[tuple[str, int, int, str]]:
 def test_a_faulty_scene_names_exactly_its_faults(path: Path) -> None:
     expected = expectations(path)
     assert expected, "every file of the corpus says what it expects"
-    found = faults_of(path).diagnostics
+    assert_expected(expected, faults_of(path))
+
+
+@pytest.mark.parametrize("path", GEOMETRY, ids=lambda path: path.stem)
+def test_a_fault_of_geometry_has_its_place_too(path: Path) -> None:
+    read_scene(path)
+    with pytest.raises(InputError) as caught:
+        load_problem(path)
+    assert_expected(expectations(path), caught.value)
+
+
+def assert_expected(
+    expected: list[tuple[str, int, int, str]], error: InputError
+) -> None:
+    found = error.diagnostics
     for diagnostic, (file, line, column, message) in zip(found, expected, strict=True):
         assert Path(diagnostic.file or "").name == file
         assert (diagnostic.line, diagnostic.column) == (line, column)
