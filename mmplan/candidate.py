@@ -41,4 +41,5 @@ class Candidate:
     @property
     def T_tool_object(self) -> Array:
         """The pose (4, 4) of the object in the hand."""
-        return np.linalg.inv(self.T_object_tool)
+        inverse: Array = np.linalg.inv(self.T_object_tool).astype(np.float64)
+        return inverse

@@ -87,7 +87,8 @@ class FailureReport:
     def lines(self) -> Iterator[str]:
         """The report for people, line by line."""
         yield f"task {self.task + 1} ({self.object}): {self.reason}"
-        yield f"of {self.evaluations} evaluations{'at the start':>22}{'at the goal':>14}"
+        evaluations = f"of {self.evaluations} evaluations"
+        yield f"{evaluations:<28}{'at the start':>16}{'at the goal':>14}"
         for label in self.ends[0].outcomes:
             start, goal = (end.outcomes[label] for end in self.ends)
             if start or goal:
@@ -99,8 +100,8 @@ class FailureReport:
                 yield from (f"  {pair}" for pair in pairs)
         start_only, goal_only, both = self.grasps_by_end
         yield (
-            f"grasps that work: {start_only} at the start only, {goal_only} at the goal "
-            f"only, {both} at both"
+            f"grasps that work: {start_only} at the start only, {goal_only} at the "
+            f"goal only, {both} at both"
         )
         for number, attempt in enumerate(self.attempts, start=1):
             yield (
@@ -115,7 +116,7 @@ def failure_report(
     found: Optimization,
     attempts: tuple[Attempt, ...],
 ) -> FailureReport:
-    """Account for a search without a plan; evaluations are looked at again for names."""
+    """Account for a search without a plan; what collided is looked at again."""
     start, goal = (_end_report(End(end), score, found) for end in End)
     return FailureReport(
         task=number,

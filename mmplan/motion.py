@@ -195,9 +195,7 @@ class TaskMotion:
         assert motion is not None
         raise _BlockedError(name, motion.message)
 
-    def _hand(
-        self, name: str, world: CollisionWorld, q: Array, hand: Array
-    ) -> Array:
+    def _hand(self, name: str, world: CollisionWorld, q: Array, hand: Array) -> Array:
         motion = hand_motion(world, q, hand, self.problem.planner.resolution)
         if not motion.complete:
             raise _BlockedError(name, motion.message)
@@ -227,7 +225,9 @@ class TaskMotion:
     def _resting(self, world: CollisionWorld, T_world_object: Array) -> CollisionWorld:
         """The world in which the object may touch what it stands on at a pose."""
         name = self.task.object
-        touched = supports(world.scenery, name, T_world_object, TOUCH_TOLERANCE)
+        touched = supports(
+            world.scenery, name, T_world_object, TOUCH_TOLERANCE, world.standing
+        )
         return world.permit_touch(name, supports=touched)
 
     def _turns(self, parts: list[_Part]) -> Array:
@@ -235,7 +235,9 @@ class TaskMotion:
         arm = self.problem.robot.arm
         q = np.concatenate([part.path for part in parts])[:, arm.indices]
         others = windings(q[0], arm.lower, arm.upper) - q[0]
-        inside = [bool(np.all((q + t >= arm.lower) & (q + t <= arm.upper))) for t in others]
+        inside = [
+            bool(np.all((q + t >= arm.lower) & (q + t <= arm.upper))) for t in others
+        ]
         turns = np.zeros((sum(inside), self.problem.robot.model.nq))
         turns[:, arm.indices] = others[inside]
         return turns

@@ -21,6 +21,7 @@ from mmplan.scoring import End, ScoreFunction
 from mmplan.shapes import Array
 from mmplan.verification import examine
 
+
 class Progress(Protocol):
     """Is told how far `solve` has come; `of` is None where the end is not known."""
 
@@ -38,12 +39,14 @@ def solve(problem: Problem, *, seed: int = 0, progress: Progress | None = None) 
         NoPlanError: No plan was found; the error carries the account.
         VerificationError: The tasks are proven one by one, but not in a row.
     """
-    report = progress or (lambda what, done, of: None)
+    report: Progress = progress or _ignore
     seeds = np.random.SeedSequence(seed).spawn(len(problem.tasks))
     rest, plans = problem, []
     for number, sequence in enumerate(seeds):
         rng = np.random.default_rng(sequence)
-        plan = _solve_task(replace(rest, tasks=(problem.tasks[number],)), number, seed, rng, report)
+        plan = _solve_task(
+            replace(rest, tasks=(problem.tasks[number],)), number, seed, rng, report
+        )
         plans.append(plan)
         rest = _after(rest, plan)
     if len(plans) == 1:
@@ -53,6 +56,10 @@ def solve(problem: Problem, *, seed: int = 0, progress: Progress | None = None) 
     if not verification.ok:
         raise VerificationError(tuple(str(f) for f in verification.faults))
     return replace(whole, verification=verification)
+
+
+def _ignore(what: str, done: int, of: int | None) -> None:
+    """Nobody watches."""
 
 
 def _solve_task(
@@ -97,7 +104,7 @@ def _optimize(
         optimizer,
         settings.evaluations,
         problem.planner.candidates,
-        lambda spent, best: report("optimization", spent, settings.evaluations),
+        lambda spent: report("optimization", spent, settings.evaluations),
     )
 
 

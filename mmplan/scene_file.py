@@ -23,6 +23,9 @@ def load_problem(name: str | Path) -> Problem:
     scene = read_scene(name)
 
     # Only a scene that is well formed is worth the time that these take to import.
+    from mmplan.problem_checks import check_geometry
     from mmplan.scene_build import build_problem
 
-    return build_problem(scene)
+    problem = build_problem(scene)
+    check_geometry(problem, scene.document)
+    return problem

@@ -5,6 +5,7 @@ from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
 from mmplan.collision.closing import Closings, HandCloser
 from mmplan.collision.distances import LinkDistances
 from mmplan.collision.scenery import Scenery
+from mmplan.collision.solids import solids_of_obstacle
 from mmplan.collision.supports import clearances, supports
 from mmplan.collision.world import (
     CONTACT_ZONE,
@@ -29,5 +30,6 @@ __all__ = [
     "clearances",
     "local_bounds",
     "moved_bounds",
+    "solids_of_obstacle",
     "supports",
 ]

@@ -127,8 +127,14 @@ def _overlap(a: Bounds, b: Bounds) -> npt.NDArray[np.bool_]:
     """Whether boxes overlap, broadcast over all but the last axis."""
     a_low, a_high = _corners(a)
     b_low, b_high = _corners(b)
-    overlap = a_low[0] <= b_high[0]
-    for low, high in ((b_low[0], a_high[0]), (a_low[1], b_high[1]), (b_low[1], a_high[1]), (a_low[2], b_high[2]), (b_low[2], a_high[2])):
+    overlap: npt.NDArray[np.bool_] = a_low[0] <= b_high[0]
+    for low, high in (
+        (b_low[0], a_high[0]),
+        (a_low[1], b_high[1]),
+        (b_low[1], a_high[1]),
+        (a_low[2], b_high[2]),
+        (b_low[2], a_high[2]),
+    ):
         overlap &= low <= high
     return overlap
 

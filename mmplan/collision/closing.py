@@ -10,8 +10,9 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
+from mmplan.collision.separation import signed_distance, transform
 from mmplan.collision.solids import Solid
-from mmplan.kinematics import joint_placements
+from mmplan.kinematics import ForwardKinematics, joint_placements, motion_axis
 from mmplan.robot import Robot
 from mmplan.shapes import Array
 
@@ -48,7 +49,14 @@ class HandCloser:
         local = [local_bounds(s.geometry) for s in solids]
         stacked = Bounds(*(np.array(part) for part in zip(*local, strict=True)))
         self._bounds = moved_bounds(stacked, placements)
-        self._transforms = [_transform(T) for T in placements]
+        self._transforms = [transform(T) for T in placements]
+        self._kinematics = ForwardKinematics(robot.model)
+        names = robot.hand.names
+        self._fingers = [_bodies_moved_by(robot, name) for name in names]
+        self._top_speeds = [
+            _top_speed(robot, name, bodies)
+            for name, bodies in zip(names, self._fingers, strict=True)
+        ]
 
     def close(self, T_object_tool: Array) -> Closings:
         """Close the hand at tool poses (n, 4, 4) in the object's frame."""
@@ -68,78 +76,80 @@ class HandCloser:
     def _advance(
         self, T_object_tool: Array, hand: Array, finger: int
     ) -> npt.NDArray[np.bool_]:
-        """Move one finger of all hands (n, h) to contact, in place; who touches, (n,)."""
+        """Move one finger of n hands to contact, `hand` in place; which touch, (n,)."""
         stop = self._robot.hand_closed[finger]
         direction = np.sign(stop - self._robot.hand_open[finger])
         touching = np.zeros(len(hand), dtype=np.bool_)
-        moving = np.ones(len(hand), dtype=np.bool_)
-        for step in range(_MAX_STEPS):
-            rows = np.flatnonzero(moving)
-            if len(rows) == 0:
-                break
-            distance, reach = self._distances(T_object_tool[rows], hand[rows], finger)
+        moving = np.arange(len(hand))
+        for _ in range(_MAX_STEPS):
+            distance = self._distances(T_object_tool[moving], hand[moving], finger)
             near = distance <= CONTACT_DISTANCE
-            touching[rows] = near & ((step > 0) | (distance > 0.0))
-            ahead = np.where(near, 0.0, (distance - CONTACT_DISTANCE / 2) / reach)
-            at_stop = np.abs(stop - hand[rows, finger]) <= ahead
-            hand[rows, finger] += direction * np.where(at_stop, 0.0, ahead)
-            hand[rows[at_stop], finger] = np.where(
-                near[at_stop], hand[rows[at_stop], finger], stop
-            )
-            moving[rows] = ~near & ~at_stop
+            touching[moving[near]] = distance[near] > 0.0
+            ahead = (distance - CONTACT_DISTANCE / 2) / self._top_speeds[finger]
+            missed = ~near & (ahead >= np.abs(stop - hand[moving, finger]))
+            hand[moving[missed], finger] = stop
+            on = ~near & ~missed
+            moving, ahead = moving[on], ahead[on]
+            hand[moving, finger] += direction * ahead
+            if len(moving) == 0:
+                break
         return touching
 
-    def _distances(
-        self, T_object_tool: Array, hand: Array, finger: int
-    ) -> tuple[Array, Array]:
-        """Distances (n,) of one finger to the object and its points' top speeds (n,)."""
+    def _distances(self, T_object_tool: Array, hand: Array, finger: int) -> Array:
+        """Distances (n,) of one finger to the object."""
         robot = self._robot
-        joint = robot.model.getJointId(robot.hand.names[finger])
-        q = np.tile(pin.neutral(robot.model), (len(hand), 1))
+        q = np.tile(robot.q_neutral, (len(hand), 1))
         q[:, robot.hand.indices] = hand
-        placements = joint_placements(robot.model, q)
-        T_tool_world = np.linalg.inv(placements[:, robot.tool_joint] @ robot.T_joint_tool)
-        T_object_joint = T_object_tool @ T_tool_world @ placements[:, joint]
+        T_world_joint = self._kinematics(q)
+        T_tool_world = np.linalg.inv(
+            T_world_joint[:, robot.tool_joint] @ robot.T_joint_tool
+        )
         distance = np.full(len(hand), np.inf)
-        reach = 0.0
-        for body in robot.geometry.geometryObjects:
-            if joint in robot.model.supports[body.parentJoint]:
-                T = T_object_joint @ body.placement.homogeneous
-                distance = np.minimum(distance, self._nearest(body.geometry, T))
-                reach = max(reach, _top_speed(robot.model, joint, body))
-        return distance, np.full(len(hand), reach)
+        for body in self._fingers[finger]:
+            T = T_world_joint[:, body.parentJoint] @ body.placement.homogeneous
+            T_object_body = T_object_tool @ T_tool_world @ T
+            distance = np.minimum(distance, self._nearest(body.geometry, T_object_body))
+        return distance
 
     def _nearest(self, geometry: coal.CollisionGeometry, T: Array) -> Array:
         """Distances (n,) of a geometry at poses (n, 4, 4) to the object."""
         bounds = moved_bounds(local_bounds(geometry), T)
         gaps = Bounds(*(part[:, None] for part in bounds)).gap(self._bounds)
         nearest = np.full(len(T), np.inf)
-        request = coal.DistanceRequest()
         for i, order in enumerate(np.argsort(gaps, axis=1)):
-            pose = _transform(T[i])
+            pose = transform(T[i])
             for j in order:
                 if gaps[i, j] >= nearest[i]:
                     break
-                distance = coal.distance(
-                    geometry,
-                    pose,
-                    self._solids[j].geometry,
-                    self._transforms[j],
-                    request,
-                    coal.DistanceResult(),
-                )
+                other, T_other = self._solids[j].geometry, self._transforms[j]
+                distance = signed_distance(geometry, pose, other, T_other)
                 nearest[i] = min(nearest[i], distance)
         return nearest
 
 
-def _top_speed(model: pin.Model, joint: int, body: pin.GeometryObject) -> float:
-    """The most that any point of a finger's body moves per unit of its joint."""
-    if model.joints[joint].shortname().startswith(("JointModelP", "JointModelHelical")):
-        return 1.0
-    box = local_bounds(body.geometry)
-    lever = float(np.linalg.norm(body.placement.translation) + np.linalg.norm(box.half))
-    return lever + float(np.linalg.norm(box.centre))
+def _bodies_moved_by(robot: Robot, name: str) -> list[pin.GeometryObject]:
+    """The collision bodies that a joint moves."""
+    joint = robot.model.getJointId(name)
+    return [
+        body
+        for body in robot.geometry.geometryObjects
+        if joint in robot.model.supports[body.parentJoint]
+    ]
 
 
-def _transform(T: Array) -> coal.Transform3s:
-    return coal.Transform3s(T[:3, :3], T[:3, 3])
+def _top_speed(robot: Robot, name: str, bodies: list[pin.GeometryObject]) -> float:
+    """The most that any point of the bodies moves per unit of a joint, m."""
+    joint = robot.model.getJointId(name)
+    linear, angular = np.split(motion_axis(robot.model, joint), 2)
+    if not angular.any():
+        return float(np.linalg.norm(linear))
+    T_world_joint = joint_placements(robot.model, robot.q_neutral[None])[0]
+    levers = []
+    for body in bodies:
+        box = local_bounds(body.geometry)
+        centre = T_world_joint[body.parentJoint] @ body.placement.homogeneous
+        offset = (
+            centre[:3, :3] @ box.centre + centre[:3, 3] - T_world_joint[joint][:3, 3]
+        )
+        levers.append(np.linalg.norm(offset) + np.linalg.norm(box.half))
+    return float(max(levers))

@@ -102,5 +102,5 @@ def _write(path: Path, pieces: list[Array]) -> None:
     """Write the pieces so that the file appears whole or not at all."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-        np.savez(file, *pieces)  # type: ignore[arg-type]
+        np.savez(file, *pieces)
     Path(file.name).replace(path)

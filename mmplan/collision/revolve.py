@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from mmplan.shapes import Array
@@ -22,7 +24,7 @@ def convex_pieces(profile: Array) -> list[Array]:
     pieces: list[Array] = []
     trapezoids = _trapezoids(np.asarray(profile, dtype=np.float64))
     for polygon in _merge([t for t in trapezoids if _reaches_axis(t)]):
-        pieces.append(_turned(polygon, 0.0, 2 * np.pi, _slice_count(polygon)))
+        pieces += [_turned(polygon, 0.0, 2 * np.pi, _slice_count(polygon))]
     for polygon in _merge([t for t in trapezoids if not _reaches_axis(t)]):
         step = 2 * np.pi / _slice_count(polygon)
         starts = np.arange(0.0, 2 * np.pi - step / 2, step)
@@ -68,7 +70,7 @@ def _trapezoids(profile: Array) -> list[Array]:
     a, b = profile, np.roll(profile, -1, axis=0)
     heights = np.unique(np.round(profile[:, 1], 9))
     cut: list[Array] = []
-    for low, high in zip(heights[:-1], heights[1:], strict=True):
+    for low, high in pairwise(heights):
         middle = 0.5 * (low + high)
         crosses = (a[:, 1] < middle) != (b[:, 1] < middle)
         p, d = a[crosses], b[crosses] - a[crosses]
@@ -76,7 +78,9 @@ def _trapezoids(profile: Array) -> list[Array]:
         order = np.argsort(r[1])
         for i, o in zip(order[0::2], order[1::2], strict=True):
             cut.append(
-                np.array([[r[0][i], low], [r[0][o], low], [r[2][o], high], [r[2][i], high]])
+                np.array(
+                    [[r[0][i], low], [r[0][o], low], [r[2][o], high], [r[2][i], high]]
+                )
             )
     return cut
 

@@ -30,8 +30,17 @@ class Scenery:
         return cls(
             obstacles=tuple(solids),
             grounds=frozenset(o.name for o in problem.obstacles if o.ground),
-            objects={o.name: _solids_of_object(o) for o in problem.objects},
+            objects={o.name: cls.solids_of_object(o) for o in problem.objects},
         )
+
+    @staticmethod
+    def solids_of_object(item: Object) -> tuple[Solid, ...]:
+        """The solids of an object in its own frame.
+
+        Raises:
+            InputError: Its mesh cannot be used.
+        """
+        return tuple(Solid(item.name, g, np.eye(4)) for g in geometries(item.shape))
 
     def is_ground(self, owner: str) -> bool:
         """Whether the base drives on this obstacle (or fixture's link)."""
@@ -43,7 +52,3 @@ class Scenery:
         volumes = np.array([s.geometry.computeVolume() for s in solids])
         centres = [s.geometry.computeCOM() for s in solids]
         return np.average([np.ravel(c) for c in centres], axis=0, weights=volumes)
-
-
-def _solids_of_object(item: Object) -> tuple[Solid, ...]:
-    return tuple(Solid(item.name, g, np.eye(4)) for g in geometries(item.shape))

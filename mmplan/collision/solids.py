@@ -97,10 +97,15 @@ def _fixture_bodies(
     try:
         model = pin.buildModelFromUrdf(str(fixture.path))
         geometry = pin.buildGeomFromUrdf(
-            model, str(fixture.path), pin.GeometryType.COLLISION, str(fixture.path.parent)
+            model,
+            str(fixture.path),
+            pin.GeometryType.COLLISION,
+            package_dirs=[str(fixture.path.parent)],
         )
     except (RuntimeError, ValueError) as error:
-        raise InputError(f"{fixture.path}: this URDF cannot be read: {error}") from error
+        raise InputError(
+            f"{fixture.path}: this URDF cannot be read: {error}"
+        ) from error
     q = _fixture_configuration(model, fixture)
     data, geometry_data = model.createData(), geometry.createData()
     pin.updateGeometryPlacements(model, data, geometry, geometry_data, q)

@@ -48,7 +48,7 @@ class CollisionWorld:
     scenery: Scenery
     standing: Mapping[str, Array]  # object -> T_world_object
     attached: Mapping[str, Array] = field(default_factory=dict)  # -> T_tool_object
-    touch: TouchRules = TouchRules()
+    touch: TouchRules = field(default_factory=TouchRules)
     only_base: bool = False
 
     @classmethod
@@ -167,4 +167,3 @@ class CollisionWorld:
     @cached_property
     def _checker(self) -> Checker:
         return Checker(self.model, self._assembly)
-

@@ -10,7 +10,8 @@ import numpy as np
 from mmplan.scoring import End
 from mmplan.shapes import Array
 
-# Candidates are distinct if a base differs by this (m) or a grasp gene by a share of 5 %.
+# Candidates are distinct if a base is this far off (m) or a grasp gene by this share of
+# its range.
 _BASE_APART = 0.05
 _GRASP_APART = 0.05
 

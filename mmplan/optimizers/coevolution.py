@@ -43,9 +43,7 @@ class CoEvolution:
         self._space = space
         self._settings = settings
         self._rng = rng
-        self._bases = {
-            end: space.bases[end].sample(settings.bases, rng) for end in End
-        }
+        self._bases = {end: space.bases[end].sample(settings.bases, rng) for end in End}
         self._grasps = space.grasps.sample(settings.grasps, rng)
         self._asked = 0
         self._search = self._cycle_forever()
@@ -90,7 +88,7 @@ class CoEvolution:
             yield from self._evolve_grasps()
 
     def _evolve_bases(self, end: End) -> _Search:
-        """One generation; F_Base is the best score with the k fittest grasps (eq. 3)."""
+        """A generation; F_Base is the best score with the k fittest grasps (eq. 3)."""
         bases = self._bases[end]
         q_base = self._space.bases[end].q_base(bases)
         scores = yield from self._ask_all(end, q_base, self._fittest_grasps())
@@ -152,7 +150,7 @@ def breed(
     mutation: float,
     rng: np.random.Generator,
 ) -> Array:
-    """n children (n, d) by two-point crossover of two different parents and mutation.
+    """N children (n, d) by two-point crossover of two different parents and mutation.
 
     Each gene mutates with probability `mutation` by a uniform value of at most a
     quarter of its range either way.

@@ -26,7 +26,7 @@ class RandomSampling:
     def __init__(
         self,
         space: SearchSpace,
-        settings: OptimizerSettings,
+        settings: OptimizerSettings,  # noqa: ARG002 (it has none to make)
         rng: np.random.Generator,
     ) -> None:
         """Start with nothing drawn; `settings` are not needed."""

@@ -15,8 +15,8 @@ from mmplan.optimizers.optimizer import Optimizer, Queries, SearchSpace
 from mmplan.scoring import End, Outcome, ScoreFunction
 from mmplan.shapes import Array
 
-# Called with the evaluations done so far and the best sum of scores.
-Progress: TypeAlias = Callable[[int, float], None]
+# Called with the evaluations done so far.
+Progress: TypeAlias = Callable[[int], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,9 @@ class Optimization:
 
 def search_space(score: ScoreFunction) -> SearchSpace:
     """The annuli of bases about the object at both ends and the grasps' bounds."""
-    return SearchSpace({end: _placements(score, end) for end in End}, score.family.genes)
+    return SearchSpace(
+        {end: _placements(score, end) for end in End}, score.family.genes
+    )
 
 
 def optimize(
@@ -67,7 +69,7 @@ def optimize(
         asked.append(queries)
         history.append((spent, archive.best))
         if progress is not None:
-            progress(spent, archive.best)
+            progress(spent)
     return Optimization(
         candidates=tuple(optimizer.candidates(archive, candidates)),
         evaluations=spent,
@@ -108,4 +110,3 @@ def _placements(score: ScoreFunction, end: End) -> BasePlacements:
         outer=robot.reach,
         is_free=lambda q_base: score.base_outcomes(end, q_base) == Outcome.SCORED,
     )
-

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -36,7 +37,8 @@ class Clutter:
 
     def __call__(self, grasped: Grasped) -> Array:
         """C of each configuration in m/m, (n,)."""
-        return np.sum(self.by_link(grasped), axis=1)
+        C: Array = self.by_link(grasped).sum(axis=1)
+        return C
 
     def by_link(self, grasped: Grasped) -> Array:
         """The summands w_l d_l, (n, links), in the order of `links`."""
@@ -53,11 +55,18 @@ class Clutter:
         d[:, self._groups["arm"]] = self._distances[end](q, self._groups["arm"])
         for group, ids in (("base", grasped.base), ("tool", grasped.grasp)):
             links = self._groups[group]
-            d[:, links] = self._caches[end, group].rows(
-                ids.tolist(),
-                lambda rows, links=links: self._distances[end](q[rows], links),
-            )
+            compute = partial(self._of_rows, end, q, links)
+            d[:, links] = self._caches[end, group].rows(ids.tolist(), compute)
         return d
+
+    def _of_rows(
+        self,
+        end: End,
+        q: Array,
+        links: npt.NDArray[np.int64],
+        rows: npt.NDArray[np.int64],
+    ) -> Array:
+        return self._distances[end](q[rows], links)
 
 
 class LinkWeights:

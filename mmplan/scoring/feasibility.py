@@ -1,4 +1,4 @@
-"""Which bases and grasps are feasible at one end of a task, and in which configurations.
+"""Which bases and grasps are feasible at one end of a task, in which configurations.
 
 Feasible means free of collision with the hand closed on the object and with the hand
 opened around it, as it must be just before grasping and just after releasing.
@@ -26,6 +26,10 @@ class Arms(NamedTuple):
     q: Array  # (n, branches, nq)
     exists: Mask  # (n, branches)
     within: Mask  # (n, branches), also within the joint limits
+
+    def rows(self, which: Mask) -> Arms:
+        """Those of some of the grasps, by a mask (n,)."""
+        return Arms(self.q[which], self.exists[which], self.within[which])
 
     @property
     def outcome(self) -> npt.NDArray[np.int8]:

@@ -28,5 +28,6 @@ class Manipulability:
 def manipulability(robot: Robot, q: Array) -> Array:
     """The smallest eigenvalue of J Jᵀ at configurations q (n, nq), (n,)."""
     J = tool_jacobians(robot.model, robot.tool_frame, q, robot.arm.indices)  # (n, 6, k)
-    smallest: Array = np.linalg.eigvalsh(J @ J.transpose(0, 2, 1))[:, 0]
-    return np.maximum(smallest, 0.0)
+    smallest = np.linalg.eigvalsh(J @ J.transpose(0, 2, 1))[:, 0]
+    M: Array = np.maximum(smallest, 0.0).astype(np.float64)
+    return M

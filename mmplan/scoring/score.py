@@ -11,7 +11,7 @@ from mmplan.collision import CollisionWorld, Contact, HandCloser
 from mmplan.grasps import GraspFamily
 from mmplan.problem import Problem, Task
 from mmplan.scoring.clutter import Clutter
-from mmplan.scoring.feasibility import Arms, Feasibility
+from mmplan.scoring.feasibility import Feasibility
 from mmplan.scoring.grasp_quality import grasp_quality
 from mmplan.scoring.manipulability import Manipulability
 from mmplan.scoring.outcome import End, Outcome
@@ -108,7 +108,9 @@ class ScoreFunction:
             list(_keys(grasps)), lambda new: self._hold(grasps[new])
         )
         hand = len(self.problem.robot.hand)
-        pose, opened, closed, outcome = np.split(rows, [16, 16 + hand, 16 + 2 * hand], 1)
+        pose, opened, closed, outcome = np.split(
+            rows, [16, 16 + hand, 16 + 2 * hand], 1
+        )
         return Holds(
             pose.reshape(-1, 4, 4), opened, closed, outcome[:, 0].astype(np.int8)
         )
@@ -132,9 +134,13 @@ class ScoreFunction:
         """What is known of bases (n, b) without any grasp, (n,) of Outcome."""
         rows = self._bases[end].rows(
             list(_keys(q_base)),
-            lambda new: self._feasibility[end].base_outcomes(q_base[new])[:, None],
+            lambda new: self._base_outcome_rows(end, q_base[new]),
         )
         return rows[:, 0].astype(np.int8)
+
+    def _base_outcome_rows(self, end: End, q_base: Array) -> Array:
+        outcomes = self._feasibility[end].base_outcomes(q_base)
+        return outcomes[:, None].astype(np.float64)
 
     def _hold(self, grasps: Array) -> Array:
         """The rows of `_holds`: pose, opened and closed hand, outcome."""
@@ -181,11 +187,13 @@ class ScoreFunction:
         left = np.flatnonzero(outcome == Outcome.SCORED)
         arms = feasibility.arms(q_base[left], self.family.tool_poses(grasps[left]))
         outcome[left] = arms.outcome
-        reached = arms.within.any(axis=1)
-        arms, left = Arms(*(part[reached] for part in arms)), left[reached]
+        reached = arms.outcome == Outcome.SCORED
+        arms, left = arms.rows(reached), left[reached]
         holds = self.holds(grasps[left])
         outcome[left] = holds.outcome
-        row, branch = np.nonzero(arms.within & (holds.outcome == Outcome.SCORED)[:, None])
+        row, branch = np.nonzero(
+            arms.within & (holds.outcome == Outcome.SCORED)[:, None]
+        )
         q = arms.q[row, branch]
         q[:, self.problem.robot.hand.indices] = holds.closed[row]
         found = feasibility.outcomes(q, holds.opened[row])

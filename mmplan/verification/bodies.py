@@ -12,7 +12,7 @@ import pinocchio as pin
 from mmplan.collision import CollisionWorld
 from mmplan.collision.bounds import local_bounds
 from mmplan.collision.separation import Separation
-from mmplan.kinematics import joint_placements, motion_axis
+from mmplan.kinematics import ForwardKinematics, motion_axis
 from mmplan.shapes import Array
 
 Indices: TypeAlias = npt.NDArray[np.int64]
@@ -32,6 +32,7 @@ class Bodies:
         """Read a world; `travel` (nq,) is the largest |q| that is going to occur."""
         self.world = world
         self._model = world.model
+        self._kinematics = ForwardKinematics(world.model)
         objects = world.geometry.geometryObjects
         self.separation = Separation(world.geometry)
         self.owners = [body.owner for body in world.bodies]
@@ -43,9 +44,10 @@ class Bodies:
         self.centres = np.array([b.centre for b in bounds])  # in the bodies' frames
         self.radii = np.linalg.norm(self.halves, axis=1)  # of spheres about the boxes
         self.supports = _supports(self._model)  # (joints, nq)
-        self.levers = np.array(
-            [self._levers(body, travel) for body in range(len(objects))]
-        )
+        self.levers = np.zeros((len(self), self._model.nq))
+        for joint in np.unique(self.joints).tolist():
+            moved = np.flatnonzero(self.joints == joint)
+            self.levers[moved] = self._levers(joint, moved, travel)
 
     def __len__(self) -> int:
         """The number of bodies."""
@@ -53,7 +55,7 @@ class Bodies:
 
     def joint_poses(self, q: Array) -> Array:
         """Poses T_world_joint (n, joints, 4, 4) at configurations (n, nq)."""
-        return joint_placements(self._model, q)
+        return self._kinematics(q)
 
     def centres_at(self, T_world_joint: Array) -> Array:
         """Centres (n, bodies, 3) of the bodies' boxes in the world."""
@@ -82,7 +84,7 @@ class Bodies:
     def corners(self, owner: str) -> Array:
         """Corners (k, 3) of the boxes about an owner's bodies, in its joint's frame."""
         own = np.flatnonzero(self.belong_to([owner]))
-        return np.concatenate([self._corners(int(body)) for body in own])
+        return self._corners(own).reshape(-1, 3)
 
     def relative_levers(self, first: Indices, second: Indices) -> Array:
         """How far joints can carry the bodies of pairs (k,) to each other, (k, nq).
@@ -94,32 +96,32 @@ class Bodies:
         levers = self.levers[first] + self.levers[second]
         return np.where(only_one, levers, 0.0)
 
-    def _corners(self, body: int) -> Array:
+    def _corners(self, body: Indices) -> Array:
+        """Corners (k, 8, 3) of the boxes about bodies (k,), in their joints' frames."""
         signs = np.array(np.meshgrid(*[(-1.0, 1.0)] * 3)).reshape(3, -1).T
-        T, points = (
-            self.placements[body],
-            self.centres[body] + signs * self.halves[body],
-        )
-        corners: Array = points @ T[:3, :3].T + T[:3, 3]
+        points = self.centres[body, None] + signs * self.halves[body, None]
+        T = self.placements[body]
+        corners: Array = points @ T[:, :3, :3].transpose(0, 2, 1) + T[:, None, :3, 3]
         return corners
 
-    def _levers(self, body: int, travel: Array) -> Array:
-        """The levers (nq,) of one body, from its own joint towards the world.
+    def _levers(self, joint: int, body: Indices, travel: Array) -> Array:
+        """The levers (k, nq) of bodies of one joint, from there towards the world.
 
-        `points` are carried by joint `joint` and given in its frame; at its parent,
-        all that is known of them is that they lie in a ball around this joint.
+        `points` (k or 1, p, 3) are carried by `joint` and given in its frame. Of the
+        bodies, a joint further up knows only that they lie in balls of `radius` (k,)
+        around its child joint.
         """
-        levers = np.zeros(self._model.nq)
-        joint, points, radius = int(self.joints[body]), self._corners(body), 0.0
+        levers = np.zeros((len(body), self._model.nq))
+        points, radius = self._corners(body), np.zeros(len(body))
         while joint > 0:
             index = self._model.joints[joint].idx_q
             linear, angular = np.split(motion_axis(self._model, joint), 2)
             prismatic = bool(np.any(linear))
-            away = np.linalg.norm(np.cross(points, angular), axis=1)
-            levers[index] = 1.0 if prismatic else away.max() + radius
-            radius += float(np.linalg.norm(points, axis=1).max())
-            radius += float(travel[index]) if prismatic else 0.0
-            points = self._model.jointPlacements[joint].translation[None]
+            away = np.linalg.norm(np.cross(points, angular), axis=2).max(axis=1)
+            levers[:, index] = 1.0 if prismatic else away + radius
+            radius = radius + np.linalg.norm(points, axis=2).max(axis=1)
+            radius += travel[index] if prismatic else 0.0
+            points = self._model.jointPlacements[joint].translation[None, None]
             joint = int(self._model.parents[joint])
         return levers
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from mmplan.collision import TOUCH_TOLERANCE
+from mmplan.collision.separation import transform
 from mmplan.problem import Problem
 from mmplan.replay import Stage
 from mmplan.shapes import Array
@@ -63,7 +64,7 @@ def _finger_distances(stage: Stage, bodies: Bodies) -> dict[str, float]:
     """The distance (m) of each finger to the object at the segment's start."""
     T = bodies.joint_poses(stage.segment.positions[:1])[0]
     poses = [
-        bodies.separation.pose(T[joint] @ placement)
+        transform(T[joint] @ placement)
         for joint, placement in zip(bodies.joints, bodies.placements, strict=True)
     ]
     held = [i for i, owner in enumerate(bodies.owners) if owner == stage.task.object]

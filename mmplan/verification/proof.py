@@ -24,15 +24,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from mmplan.hermite import HermiteCurve
 from mmplan.shapes import Array
 from mmplan.verification.bodies import Bodies, Indices, Mask
-from mmplan.verification.gaps import box_gaps, sphere_gaps
 from mmplan.verification.ledger import Finding, Ledger
+from mmplan.verification.moments import Moments
 from mmplan.verification.touching import TouchRule
 
 # The first stretches of time are at most this long, s.
@@ -59,7 +58,7 @@ class _Open:
         """The middles of the stretches, (n,)."""
         return (self.start + self.end) / 2.0
 
-    def middle_of(self, stretch: np.int64) -> float:
+    def middle_of(self, stretch: int) -> float:
         """The middle of one stretch."""
         return float(self.start[stretch] + self.end[stretch]) / 2.0
 
@@ -145,104 +144,77 @@ class SegmentProof:
         split = unsettled & ~small & ~overlap
         proven = slack[strict & ~(overlap | undecided | split)]
         ledger.proven = min(ledger.proven, float(np.min(proven, initial=np.inf)))
-        for k in np.flatnonzero(overlap):
+        for k in np.flatnonzero(overlap).tolist():
             ledger.note_overlap(self._finding(pairs, margins, k))
-        for k in np.flatnonzero(undecided):
+        for k in np.flatnonzero(undecided).tolist():
             ledger.note_undecided(self._finding(pairs, margins, k))
         return split
 
     def _margins(self, pairs: _Open) -> _Margins:
-        T = self._bodies.joint_poses(self._curve.positions(pairs.middle))
+        moments = Moments(self._bodies, self._curve.positions(pairs.middle))
         speed = self._curve.velocity_extremes(pairs.start, pairs.end).magnitude
         reach = speed * ((pairs.end - pairs.start) / 2.0)[:, None]  # (n, nq)
         levers = self._levers[pairs.pair]
-        at = (pairs.stretch, pairs.pair)
+        allowed_now, allowed = self._rule.allowances(
+            moments.T_world_joint, reach, pairs.stretch, pairs.pair
+        )
         margins = _Margins(
-            distance=self._sphere_gaps(pairs, T),
+            distance=moments.sphere_gaps(*self._bodies_of(pairs)),
             exact=np.zeros(len(pairs.pair), dtype=np.bool_),
             reach=np.einsum("kj,kj->k", reach[pairs.stretch], levers),
-            allowed=self._rule.throughout(T, reach, *at),
-            allowed_now=self._rule.at(T, *at),
+            allowed=allowed,
+            allowed_now=allowed_now,
         )
-        self._sharpen(pairs, T, margins)
+        self._sharpen(pairs, moments, margins)
         return margins
 
-    def _sphere_gaps(self, pairs: _Open, T_world_joint: Array) -> Array:
-        bodies = self._bodies
-        first, second = self._first[pairs.pair], self._second[pairs.pair]
-        centres = bodies.centres_at(T_world_joint)
-        apart = centres[pairs.stretch, second] - centres[pairs.stretch, first]
-        return sphere_gaps(apart, bodies.radii[first] + bodies.radii[second])
-
-    def _box_gaps(self, pairs: _Open, T_world_joint: Array, which: Indices) -> Array:
-        bodies, stretch = self._bodies, pairs.stretch[which]
-        first, second = self._first[pairs.pair[which]], self._second[pairs.pair[which]]
-        centres = bodies.centres_at(T_world_joint)
-        return box_gaps(
-            centres[stretch, second] - centres[stretch, first],
-            bodies.rotations_at(T_world_joint, stretch, first),
-            bodies.halves[first],
-            bodies.rotations_at(T_world_joint, stretch, second),
-            bodies.halves[second],
-        )
-
-    def _sharpen(self, pairs: _Open, T_world_joint: Array, margins: _Margins) -> None:
+    def _sharpen(self, pairs: _Open, moments: Moments, margins: _Margins) -> None:
         """Make distances as sharp as it takes to settle pairs, the nearest first."""
         ledger, strict = self._ledger, margins.allowed == 0.0
-        ask = _Distances(self._bodies, T_world_joint)
+        if ledger.nearest is None:
+            self._measure(pairs, moments, margins, np.argsort(margins.slack)[:1])
+        rough = np.flatnonzero(~margins.exact & (margins.slack <= ledger.floor))
+        boxes = moments.box_gaps(*self._bodies_of(pairs, rough))
+        margins.distance[rough] = np.maximum(margins.distance[rough], boxes)
+        slack = margins.slack
+        rough = rough[slack[rough] <= np.where(strict[rough], ledger.floor, 0.0)]
+        order = np.argsort(slack[rough], kind="stable")
+        self._measure(pairs, moments, margins, rough[order])
 
-        def measure(k: np.intp) -> None:
-            pair, stretch = pairs.pair[k], int(pairs.stretch[k])
-            margins.distance[k] = ask(stretch, self._first[pair], self._second[pair])
+    def _measure(
+        self, pairs: _Open, moments: Moments, margins: _Margins, queue: Indices
+    ) -> None:
+        """Exact distances along a queue, until the rest of it is settled."""
+        ledger = self._ledger
+        floor = ledger.floor
+        slack = margins.slack[queue].tolist()
+        apart = (margins.allowed_now[queue] == 0.0).tolist()
+        distances = moments.distances(*self._bodies_of(pairs, queue))
+        for n, k in enumerate(queue.tolist()):
+            if slack[n] > floor:
+                break
+            margins.distance[k] = distance = next(distances)
             margins.exact[k] = True
             ledger.queries += 1
-            if margins.allowed_now[k] == 0.0 and ledger.is_nearer(margins.distance[k]):
+            if apart[n] and ledger.is_nearer(distance):
                 ledger.nearest = self._finding(pairs, margins, k)
+                floor = ledger.floor
 
-        if ledger.nearest is None:
-            measure(np.argmin(margins.slack))
-        rough = np.flatnonzero(~margins.exact & (margins.slack <= ledger.floor))
-        boxes = self._box_gaps(pairs, T_world_joint, rough)
-        margins.distance[rough] = np.maximum(margins.distance[rough], boxes)
-        rough = rough[margins.slack[rough] <= ledger.floor]
-        slack = margins.slack[rough]
-        for i in np.argsort(slack, kind="stable"):
-            if slack[i] > ledger.floor:
-                break
-            if strict[rough[i]] or slack[i] <= 0.0:
-                measure(rough[i])
+    def _bodies_of(
+        self, pairs: _Open, which: Indices | None = None
+    ) -> tuple[Indices, Indices, Indices]:
+        """Stretch, first and second body of pairs, or of some of them."""
+        chosen = slice(None) if which is None else which
+        pair = pairs.pair[chosen]
+        return pairs.stretch[chosen], self._first[pair], self._second[pair]
 
-    def _finding(self, pairs: _Open, margins: _Margins, k: np.intp) -> Finding:
+    def _finding(self, pairs: _Open, margins: _Margins, k: int) -> Finding:
         owners, pair = self._bodies.owners, pairs.pair[k]
         return Finding(
             stage=self._stage,
             first=owners[self._first[pair]],
             second=owners[self._second[pair]],
-            time=pairs.middle_of(pairs.stretch[k]),
+            time=pairs.middle_of(int(pairs.stretch[k])),
             distance=float(margins.distance[k]),
             allowed=float(margins.allowed_now[k]),
         )
-
-
-class _Distances:
-    """Exact distances at some moments; poses are made once a body and moment."""
-
-    def __init__(self, bodies: Bodies, T_world_joint: Array) -> None:
-        self._bodies = bodies
-        self._T = T_world_joint
-        self._poses: dict[tuple[int, int], Any] = {}
-
-    def __call__(self, moment: int, first: np.int64, second: np.int64) -> float:
-        """The signed distance (m) of two bodies at a moment."""
-        i, j = int(first), int(second)
-        poses = self._pose(moment, i), self._pose(moment, j)
-        return self._bodies.separation.distance(i, poses[0], j, poses[1])
-
-    def _pose(self, moment: int, body: int) -> Any:
-        bodies = self._bodies
-        joint = bodies.joints[body]
-        key = (moment if joint else -1, body)  # what no joint moves is always there
-        if key not in self._poses:
-            T = self._T[moment, joint] @ bodies.placements[body]
-            self._poses[key] = bodies.separation.pose(T)
-        return self._poses[key]

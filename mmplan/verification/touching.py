@@ -8,7 +8,8 @@ Everything must stay apart but for three exceptions:
 2. An object that is carried may press into what it stands on at the start of its task
    by at most `TOUCH_TOLERANCE`, while no corner of the boxes around it is farther than
    `CONTACT_ZONE` from where it was when it stood there. What it stands on are the
-   obstacles whose distance or depth is at most `TOUCH_TOLERANCE` then.
+   obstacles and other objects whose distance or depth is at most `TOUCH_TOLERANCE`
+   then.
 3. The same for the goal of the task.
 
 The depth of overlap of two convex bodies changes no faster than their points move, as
@@ -72,18 +73,20 @@ class TouchRule:
         depth = np.where(gripped & touched, TOUCH_TOLERANCE, 0.0)
         return cls(depth, _zones(stage, bodies) if item in stage.attached else ())
 
-    def at(self, T_world_joint: Array, moment: Indices, pair: Indices) -> Array:
-        """The depth (k,) that pairs (k,) may have at moments (k,)."""
-        return self._allowed(
-            [z.leeway(T_world_joint) for z in self.zones], moment, pair
-        )
-
-    def throughout(
+    def allowances(
         self, T_world_joint: Array, reach: Array, moment: Indices, pair: Indices
-    ) -> Array:
-        """The depth (k,) that pairs may have as far as `reach` (n, nq) carries them."""
-        leeways = [z.leeway(T_world_joint) - reach @ z.lever for z in self.zones]
-        return self._allowed(leeways, moment, pair)
+    ) -> tuple[Array, Array]:
+        """How deep pairs (k,) may overlap: at moments (k,), and all around these.
+
+        All around is as far as joints get that move by up to `reach` (n, nq) from where
+        they are at the n moments, with poses `T_world_joint` (n, joints, 4, 4).
+        """
+        leeways = [zone.leeway(T_world_joint) for zone in self.zones]
+        left = [
+            leeway - reach @ zone.lever
+            for leeway, zone in zip(leeways, self.zones, strict=True)
+        ]
+        return self._allowed(leeways, moment, pair), self._allowed(left, moment, pair)
 
     def _allowed(self, leeways: list[Array], moment: Indices, pair: Indices) -> Array:
         allowed = self.depth[pair]
@@ -100,7 +103,9 @@ def _zones(stage: Stage, bodies: Bodies) -> tuple[Zone, ...]:
     T_joint_object = world.robot.T_joint_tool @ stage.attached[item]
     zones = []
     for T_world_object in (stage.T_world_start, stage.T_world_goal):
-        below = supports(world.scenery, item, T_world_object, TOUCH_TOLERANCE)
+        below = supports(
+            world.scenery, item, T_world_object, TOUCH_TOLERANCE, world.standing
+        )
         T_world_joint = T_world_object @ np.linalg.inv(T_joint_object)
         zones.append(
             Zone(

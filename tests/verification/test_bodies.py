@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmplan.collision import CollisionWorld
+from mmplan.collision.separation import transform
 from mmplan.shapes import Array, read_only
 from mmplan.verification.bodies import Bodies
 from mmplan.verification.gaps import box_gaps, sphere_gaps
@@ -137,7 +138,7 @@ def distances(bodies: Bodies, q: Array, pairs: Array) -> Array:
     """Signed distances (pairs,) at one configuration."""
     T, separation = bodies.joint_poses(q[None])[0], bodies.separation
     poses = [
-        separation.pose(T[joint] @ placement)
+        transform(T[joint] @ placement)
         for joint, placement in zip(bodies.joints, bodies.placements, strict=True)
     ]
     pairs = pairs.tolist()

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mmplan.collision import CollisionWorld
+from mmplan.collision.separation import transform
 from mmplan.hermite import HermiteCurve
 from mmplan.problem import Obstacle, Problem
 from mmplan.shapes import Array, Box, Capsule, Sphere
@@ -100,7 +101,7 @@ def test_the_proven_clearance_is_kept_and_the_found_one_is_real(
 def smallest_distance(bodies: Bodies, q: Array) -> float:
     T, separation = bodies.joint_poses(q[None])[0], bodies.separation
     poses = [
-        separation.pose(T[joint] @ placement)
+        transform(T[joint] @ placement)
         for joint, placement in zip(bodies.joints, bodies.placements, strict=True)
     ]
     pairs = bodies.world.pairs.tolist()

@@ -1,0 +1,84 @@
+"""Faults of a problem that only geometry shows, at their places in the scene file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from mmplan.collision import (
+    TOUCH_TOLERANCE,
+    CollisionWorld,
+    Scenery,
+    clearances,
+    solids_of_obstacle,
+)
+from mmplan.exceptions import InputError
+from mmplan.files.document import Document, Fault, KeyPath
+from mmplan.problem import Problem
+from mmplan.shapes import Array
+
+_MILLIMETRES = 1000.0
+
+
+def check_geometry(problem: Problem, document: Document) -> None:
+    """Refuse a problem whose start or goals cannot be.
+
+    Raises:
+        InputError: A shape cannot be made, the robot starts in collision, or an object
+            stands in something at its start or at a goal.
+    """
+    faults = list(_shape_faults(problem))
+    if not faults:
+        world = CollisionWorld.of_problem(problem)
+        faults = [*_start_faults(problem, world), *_object_faults(problem, world)]
+    if faults:
+        raise document.error(faults)
+
+
+def _shape_faults(problem: Problem) -> Iterator[Fault]:
+    for obstacle in problem.obstacles:
+        try:
+            solids_of_obstacle(obstacle)
+        except InputError as error:  # noqa: PERF203
+            yield Fault(("obstacles", obstacle.name), str(error))
+    for item in problem.objects:
+        try:
+            Scenery.solids_of_object(item)
+        except InputError as error:  # noqa: PERF203
+            yield Fault(("objects", item.name), str(error))
+
+
+def _start_faults(problem: Problem, world: CollisionWorld) -> Iterator[Fault]:
+    for contact in world.contacts(problem.q_start)[:3]:
+        depth = contact.depth * _MILLIMETRES
+        yield Fault(
+            ("robot", "start"),
+            f"the robot starts in collision: {contact.first} is {depth:.1f} mm deep in "
+            f"{contact.second}",
+        )
+
+
+def _object_faults(problem: Problem, world: CollisionWorld) -> Iterator[Fault]:
+    """Objects that stand in something, at the start and at each task's goal."""
+    standing = dict(world.standing)
+    for item in problem.objects:
+        where: KeyPath = ("objects", item.name, "at")
+        yield from _overlaps(world.scenery, item.name, standing, where)
+    for number, task in enumerate(problem.tasks):
+        standing[task.object] = task.T_world_goal
+        yield from _overlaps(
+            world.scenery, task.object, standing, ("tasks", number, "to")
+        )
+
+
+def _overlaps(
+    scenery: Scenery, name: str, standing: Mapping[str, Array], where: KeyPath
+) -> Iterator[Fault]:
+    near = clearances(scenery, name, standing[name], -TOUCH_TOLERANCE, standing)
+    for owner, distance in sorted(near.items(), key=lambda item: item[1]):
+        if distance < -TOUCH_TOLERANCE:
+            depth, most = -distance * _MILLIMETRES, TOUCH_TOLERANCE * _MILLIMETRES
+            yield Fault(
+                where,
+                f"{name} is {depth:.1f} mm deep in {owner}; what it stands on it may "
+                f"overlap by at most {most:g} mm",
+            )

@@ -1,0 +1,99 @@
+"""What people see: tables of results on stdout, progress on a terminal's stderr."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+if TYPE_CHECKING:
+    from mmplan.plan import Plan, TaskPlan
+    from mmplan.verification_report import VerificationReport
+
+
+class ProgressDisplay:
+    """A bar for each stage of `solve`, drawn only on a terminal."""
+
+    def __init__(self, bars: Progress) -> None:
+        """Draw into `bars`."""
+        self._bars = bars
+        self._tasks: dict[str, int] = {}
+
+    def __call__(self, what: str, done: int, of: int | None) -> None:
+        """Show how far a stage has come."""
+        if what not in self._tasks:
+            self._tasks[what] = self._bars.add_task(what, total=of)
+        self._bars.update(self._tasks[what], completed=done, total=of)  # type: ignore[arg-type]
+
+
+@contextmanager
+def progress_display(*, quiet: bool) -> Iterator[ProgressDisplay | None]:
+    """A progress display on stderr while the block runs, if that is a terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed}/{task.total}"),
+        TimeElapsedColumn(),
+    )
+    console = Console(stderr=True)
+    with Progress(*columns, console=console, transient=True) as bars:
+        yield ProgressDisplay(bars)
+
+
+def show(*parts: Table | str) -> None:
+    """Print results on stdout, without colours or a width where it is no terminal."""
+    console = Console(highlight=False, soft_wrap=True)
+    for part in parts:
+        console.print(part, markup=False) if isinstance(part, str) else console.print(
+            part
+        )
+
+
+def plan_tables(plan: Plan, output: Path | None) -> list[Table | str]:
+    """A plan in a few tables: choices, segments, proof."""
+    parts: list[Table | str] = []
+    for task in plan.tasks:
+        parts += [f"{task.object}, grasp '{task.grasp}'", _ends(task), _segments(task)]
+    if plan.verification is not None:
+        parts.append(verification_table(plan, plan.verification))
+    if output is not None:
+        parts.append(f"plan written to {output}")
+    return parts
+
+
+def verification_table(plan: Plan, report: VerificationReport) -> str:
+    """The proof in a line or two."""
+    text = f"verified: {plan.duration:.2f} s of motion, free of collision at all times"
+    if report.clearance is None:
+        return text
+    c = report.clearance
+    return (
+        f"{text}\nsmallest clearance {c.distance * 1000:.2f} mm: "
+        f"{c.first} / {c.second}, {c.segment} at {c.time:.2f} s"
+    )
+
+
+def _ends(task: TaskPlan) -> Table:
+    table = Table("", "base", *task.start.scores, "score", box=SIMPLE_HEAD)
+    for name, end in (("start", task.start), ("goal", task.goal)):
+        base = ", ".join(f"{x:.3f}" for x in end.base)
+        terms = [f"{value:.1f}" for value in end.scores.values()]
+        table.add_row(name, base, *terms, f"{sum(end.scores.values()):.1f}")
+    return table
+
+
+def _segments(task: TaskPlan) -> Table:
+    table = Table("segment", "seconds", box=SIMPLE_HEAD)
+    for segment in task.segments:
+        table.add_row(segment.name, f"{segment.duration:.2f}")
+    return table
