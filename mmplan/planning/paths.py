@@ -89,7 +89,7 @@ def plan_path(
         return _success(checker, straight, q_goals)
     found = search(checker, q_start, q_goals[usable], joints, settings, seed)
     if found.waypoints is None:
-        return _exhausted(checker, found)
+        return _exhausted(checker, found, settings)
     waypoints = _with_exact_ends(found.waypoints, q_start, q_goals[usable])
     path = shorten(waypoints, checker, settings.shortcuts, rng)
     return _success(checker, path, q_goals, found.iterations)
@@ -155,8 +155,14 @@ def _failure(checker: PathChecker, outcome: Outcome, message: str) -> PathResult
     return PathResult(outcome, message, states=checker.states, edges=checker.edges)
 
 
-def _exhausted(checker: PathChecker, found: Search) -> PathResult:
-    outcome = Outcome.TIME_LIMIT if found.out_of_time else Outcome.ITERATIONS
+def _exhausted(
+    checker: PathChecker, found: Search, settings: PlannerSettings
+) -> PathResult:
+    outcome = Outcome.GAVE_UP
+    if found.out_of_time:
+        outcome = Outcome.TIME_LIMIT
+    elif found.iterations >= settings.iterations:
+        outcome = Outcome.ITERATIONS
     message = (
         f"{outcome.value} after {found.iterations} iterations and {checker.edges} "
         f"edges: {found.start_tree} states connected to the start, "

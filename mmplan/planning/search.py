@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 from ompl import base as ob
 from ompl import geometric as og
 from ompl import util as ou
@@ -19,6 +20,9 @@ from mmplan.planning.roadmap import search_roadmap
 from mmplan.planning.state_space import ScaledStates, space_information
 from mmplan.problem import PlannerSettings
 from mmplan.shapes import Array
+
+# States nearer to each other than this are one, m.
+SAME_STATE = 1e-9
 
 
 class Budget:
@@ -51,7 +55,8 @@ class Budget:
 class Search:
     """What came of a search.
 
-    `gap` is how far from the nearest goal it ended, m of lever-arm-weighted distance.
+    `gap` (m, weighted by lever arms) is how far the states connected to the start stay
+    from the nearest goal.
     `start_tree` and `goal_tree` are the numbers of states that the planner connected
     to either end: a tree of one state tells that this end is hemmed in.
     """
@@ -91,13 +96,14 @@ def search(
         else:
             planner.solve(ob.PlannerTerminationCondition(budget))
             way = _solution(problem, states)
-        found = way is not None
-        start_tree, goal_tree = (0, 0) if found else _tree_sizes(planner, si)
+        gap, start_tree, goal_tree = 0.0, 0, 0
+        if way is None:
+            gap, start_tree, goal_tree = _how_far(planner, si, states.scaled(ends))
         return Search(
             waypoints=None if way is None else states.configurations(way),
             iterations=budget.iterations,
             out_of_time=budget.out_of_time,
-            gap=0.0 if found else _gap(problem, states.scaled(ends)),
+            gap=gap,
             start_tree=start_tree,
             goal_tree=goal_tree,
         )
@@ -144,15 +150,10 @@ def _solution(problem: ob.ProblemDefinition, states: ScaledStates) -> Array | No
     return np.array([state[0 : states.dimension] for state in path])
 
 
-def _gap(problem: ob.ProblemDefinition, ends: Array) -> float:
-    """How far the search ended from a goal; ends (1 + goals, dimension), scaled."""
-    if problem.hasApproximateSolution():
-        return float(problem.getSolutionDifference())
-    return float(np.linalg.norm(ends[1:] - ends[0], axis=1).min())
-
-
-def _tree_sizes(planner: ob.Planner, si: ob.SpaceInformation) -> tuple[int, int]:
-    """How many states the planner connected to the start, and to the goals."""
+def _how_far(
+    planner: ob.Planner, si: ob.SpaceInformation, ends: Array
+) -> tuple[float, int, int]:
+    """The gap and the sizes of the trees of a `Search`; ends (1 + g, dimension)."""
     data = ob.PlannerData(si)
     planner.getPlannerData(data)
     neighbours: dict[int, set[int]] = {i: set() for i in range(data.numVertices())}
@@ -160,16 +161,25 @@ def _tree_sizes(planner: ob.Planner, si: ob.SpaceInformation) -> tuple[int, int]
         for j in data.getEdges(i):
             neighbours[i].add(j)
             neighbours[j].add(i)
-    starts = {data.getStartIndex(i) for i in range(data.numStartVertices())}
-    goals = {data.getGoalIndex(i) for i in range(data.numGoalVertices())}
-    return _connected(neighbours, starts), _connected(neighbours, goals)
+    states = [data.getVertex(i).getState()[0 : ends.shape[1]] for i in neighbours]
+    x = np.array(states).reshape(-1, ends.shape[1])
+    # (1 + g, vertices); the planner itself also calls its nearest misses goals.
+    distances = np.linalg.norm(x[None] - ends[:, None], axis=2)
+    start_tree = _connected(neighbours, np.flatnonzero(distances[0] < SAME_STATE))
+    at_goals = np.flatnonzero(np.any(distances[1:] < SAME_STATE, axis=0))
+    reached = np.vstack([ends[:1], x[sorted(start_tree)]])
+    gap = np.linalg.norm(reached[None] - ends[1:, None], axis=2).min()
+    return float(gap), len(start_tree), len(_connected(neighbours, at_goals))
 
 
-def _connected(neighbours: dict[int, set[int]], roots: set[int]) -> int:
-    """How many vertices of a graph are connected to any of the roots."""
-    seen, todo = set(roots), list(roots)
+def _connected(
+    neighbours: dict[int, set[int]], roots: npt.NDArray[np.int64]
+) -> set[int]:
+    """The vertices of a graph that are connected to any of the roots."""
+    seen = {int(root) for root in roots}
+    todo = sorted(seen)
     while todo:
         new = neighbours[todo.pop()] - seen
         seen |= new
         todo.extend(new)
-    return len(seen)
+    return seen

@@ -12,6 +12,7 @@ from mmplan.planning import (
     transfer_joints,
     transit_joints,
 )
+from mmplan.planning.search import Search
 from mmplan.planning.shortening import path_length, shorten
 from mmplan.problem import PlannerSettings
 
@@ -130,6 +131,8 @@ def test_a_failed_search_says_how_far_it_got(stick_among, stick_joints):
     assert 0.0 < result.gap < 2.5
     assert result.start_tree > 100
     assert result.goal_tree > 0
+    # No state outside of the cell is nearer to the goal than its walls.
+    assert result.gap > 0.5
     assert "left to go" in result.message
 
 
@@ -149,6 +152,27 @@ def test_the_time_limit_is_a_safety_net(stick_among, stick_joints):
     result = plan_path(world, LEFT, RIGHT, stick_joints, settings, rng)
     assert result.outcome is Outcome.TIME_LIMIT
     assert result.iterations < 10**9
+
+
+def test_a_planner_that_gives_up_says_so(monkeypatch, gap, stick_joints):
+    nothing = Search(None, 5, False, gap=1.5, start_tree=3, goal_tree=1)
+    monkeypatch.setattr("mmplan.planning.paths.search", lambda *_: nothing)
+    rng = np.random.default_rng(0)
+    result = plan_path(gap, LEFT, RIGHT, stick_joints, SETTINGS, rng)
+    assert result.outcome is Outcome.GAVE_UP
+    assert "3 states connected to the start, 1 to the goal, 1.50 m" in result.message
+
+
+@pytest.mark.parametrize("name", ["RRTConnect", "PRM", "KPIECE1"])
+def test_searches_with_several_goals_repeat(gap, stick_joints, name):
+    goals = RIGHT + np.array([[0.0, 0.1 * k, 0.0] for k in range(4)])
+    settings = PlannerSettings(name=name, iterations=3000, resolution=RESOLUTION)
+    first, second = (
+        plan_path(gap, LEFT, goals, stick_joints, settings, np.random.default_rng(1))
+        for _ in range(2)
+    )
+    assert first.path.tobytes() == second.path.tobytes()
+    assert np.array_equal(first.path[-1], goals[first.goal])
 
 
 def test_what_is_wrong_with_the_ends_is_said_by_name(gap, stick_joints):
