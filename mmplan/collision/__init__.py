@@ -4,6 +4,7 @@ from mmplan.collision.assembly import Assembly, Body, TouchRules
 from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
 from mmplan.collision.closing import Closings, HandCloser
 from mmplan.collision.distances import LinkDistances
+from mmplan.collision.requests import make_exact
 from mmplan.collision.scenery import Scenery
 from mmplan.collision.solids import solids_of_obstacle
 from mmplan.collision.supports import clearances, supports
@@ -29,6 +30,7 @@ __all__ = [
     "TouchRules",
     "clearances",
     "local_bounds",
+    "make_exact",
     "moved_bounds",
     "solids_of_obstacle",
     "supports",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -49,11 +49,11 @@ def assemble(
     standing: Mapping[str, Array],
     attached: Mapping[str, Array],
     touch: TouchRules,
-    ignored: tuple[str, ...] = (),
+    pair_filter: Callable[[Body, Body], bool] | None = None,
 ) -> Assembly:
     """Put the world together; see `CollisionWorld` for which pairs are checked.
 
-    Pairs with a body whose kind is among `ignored` are left out.
+    Where there is a `pair_filter`, only the pairs that it accepts are.
     """
     geometry = robot.geometry.clone()
     bodies = [
@@ -70,15 +70,16 @@ def assemble(
         T_joint_object = robot.T_joint_tool @ T_tool_object
         for solid in scenery.objects[name]:
             _add(geometry, bodies, solid, "attached", robot.tool_joint, T_joint_object)
-    pairs = [
-        (i, j)
-        for i, j in _own_pairs(robot) + _scene_pairs(bodies, touch)
-        if bodies[i].kind not in ignored and bodies[j].kind not in ignored
-    ]
+    pairs = _own_pairs(robot) + _scene_pairs(bodies, touch)
+    if pair_filter is not None:
+        pairs = [(i, j) for i, j in pairs if pair_filter(bodies[i], bodies[j])]
     _set_pairs(geometry, pairs)
     depth = [_allowed_depth(bodies[i], bodies[j], touch) for i, j in pairs]
     return Assembly(
-        geometry, tuple(bodies), np.array(pairs, dtype=np.int64), np.array(depth)
+        geometry,
+        tuple(bodies),
+        np.array(pairs, dtype=np.int64).reshape(-1, 2),
+        np.array(depth),
     )
 
 

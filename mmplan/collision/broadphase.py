@@ -47,12 +47,13 @@ class Broadphase:
     ) -> None:
         """Bound every body; `pairs` (p, 2) are indices into `bodies`."""
         self._kinematics = ForwardKinematics(model)
-        self._moving = [i for i, b in enumerate(bodies) if b.joint != 0]
+        paired = set(pairs.ravel().tolist())
+        self._moving = [i for i in sorted(paired) if bodies[i].joint != 0]
         self._joints = [bodies[i].joint for i in self._moving]
         self._local, self._placements = _stacked(geometry, self._moving)
         static = sorted(
-            (i for i, b in enumerate(bodies) if b.joint == 0),
-            key=lambda i: bodies[i].owner,
+            (i for i in paired if bodies[i].joint == 0),
+            key=lambda i: (bodies[i].owner, i),
         )
         self._static = moved_bounds(*_stacked(geometry, static))
         self._groups = _Groups([bodies[i].owner for i in static], self._static)

@@ -55,14 +55,21 @@ class LinkDistances:
         obstacle distances are infinite.
         """
         bodies = np.flatnonzero(np.isin(self._link_of_body, links))
-        column = np.searchsorted(links, self._link_of_body[bodies])
+        column = np.searchsorted(links, self._link_of_body[bodies]).tolist()
         distances = np.full((len(q), len(links)), np.inf)
-        gaps = self._gaps(q, bodies)  # (n, bodies, obstacles)
-        if gaps.size == 0:
-            return distances
-        order = np.argsort(gaps, axis=2)
-        for i in range(len(q)):
-            self._nearest(q[i], bodies, column, gaps[i], order[i], distances[i])
+        for start in range(0, len(q), _CHUNK):
+            chunk = slice(start, start + _CHUNK)
+            gaps = self._gaps(q[chunk], bodies)  # (chunk, bodies, obstacles)
+            order = np.argsort(gaps, axis=2)
+            gaps = np.take_along_axis(gaps, order, axis=2)
+            pairs = np.take_along_axis(self._pair[None, bodies], order, axis=2)
+            for row, found in enumerate(distances[chunk]):
+                self._place(q[start + row])
+                for body, link in enumerate(column):
+                    nearest = self._nearest(
+                        gaps[row, body], pairs[row, body], found[link]
+                    )
+                    found[link] = nearest
         return distances
 
     def _gaps(self, q: Array, bodies: npt.NDArray[np.int64]) -> Array:
@@ -74,29 +81,29 @@ class LinkDistances:
         gaps = Bounds(*(part[:, :, None] for part in moved)).gap(self._obstacle_bounds)
         return np.where(self._pair[bodies] >= 0, gaps, np.inf)
 
+    def _place(self, q: Array) -> None:
+        pin.updateGeometryPlacements(
+            self._model, self._data, self._geometry, self._geometry_data, q
+        )
+
     def _nearest(
-        self,
-        q: Array,
-        bodies: npt.NDArray[np.int64],
-        column: npt.NDArray[np.int64],
-        gaps: Array,
-        order: npt.NDArray[np.int64],
-        distances: Array,
-    ) -> None:
-        """Lower `distances` (links,) to the exact ones, nearest bounds first."""
-        geometry, data = self._geometry, self._geometry_data
-        pin.updateGeometryPlacements(self._model, self._data, geometry, data, q)
-        for row, body in enumerate(bodies):
-            nearest = distances[column[row]]
-            for obstacle in order[row]:
-                if gaps[row, obstacle] >= nearest:
-                    break
-                pair = int(self._pair[body, obstacle])
-                found = pin.computeDistance(geometry, data, pair).min_distance
-                nearest = min(nearest, found)
-            distances[column[row]] = nearest
+        self, gaps: Array, pairs: npt.NDArray[np.int64], nearest: float
+    ) -> float:
+        """The least of `nearest` and the exact distances of pairs, by rising bounds."""
+        for start in range(0, len(gaps), _FEW):
+            few = slice(start, start + _FEW)
+            for gap, pair in zip(gaps[few].tolist(), pairs[few].tolist(), strict=True):
+                if gap >= nearest:
+                    return nearest
+                result = pin.computeDistance(self._geometry, self._geometry_data, pair)
+                nearest = min(nearest, result.min_distance)
+        return nearest
 
 
+# Configurations bounded in one go, so that the arrays stay in the cache.
+_CHUNK = 128
+# Pairs looked at in one go; seldom do more matter.
+_FEW = 8
 _ROBOT = ("base", "arm", "finger")
 _OBSTACLE = ("ground", "obstacle", "standing")
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable
 
 import coal
 import pinocchio as pin
@@ -11,7 +10,7 @@ import pinocchio as pin
 from mmplan.shapes import Array
 
 # Distances are exact to this, m.
-GJK_TOLERANCE = 1e-10
+GJK_TOLERANCE = 1e-6
 
 
 def make_exact(data: pin.GeometryData, allowed_depth: Array | None = None) -> None:
@@ -19,32 +18,38 @@ def make_exact(data: pin.GeometryData, allowed_depth: Array | None = None) -> No
 
     Pairs may overlap by `allowed_depth` (m), (pairs,).
     """
-    _forget(data.collisionRequests)
-    _forget(data.distanceRequests)
-    for request in data.distanceRequests:
-        request.gjk_tolerance = GJK_TOLERANCE
-    if allowed_depth is not None:
-        for request, depth in zip(data.collisionRequests, allowed_depth, strict=True):
-            request.security_margin = -float(depth)
+    plain, distance = collision_request(0.0), distance_request()
+    collisions, distances = data.collisionRequests, data.distanceRequests
+    for pair in range(len(collisions)):
+        depth = 0.0 if allowed_depth is None else float(allowed_depth[pair])
+        collisions[pair] = plain if depth == 0.0 else collision_request(depth)
+        distances[pair] = distance
+
+
+def collision_request(allowed_depth: float) -> coal.CollisionRequest:
+    """A request that lets overlaps pass down to a depth (m)."""
+    request = coal.CollisionRequest()
+    _forget(request)
+    request.security_margin = -allowed_depth
+    return request
 
 
 def distance_request() -> coal.DistanceRequest:
     """An exact request for single pairs."""
     request = coal.DistanceRequest()
-    _forget([request])
+    _forget(request)
     request.gjk_tolerance = GJK_TOLERANCE
     return request
 
 
-def _forget(requests: Iterable[coal.DistanceRequest | coal.CollisionRequest]) -> None:
+def _forget(request: coal.DistanceRequest | coal.CollisionRequest) -> None:
     """Make every query start from the default guess.
 
     A cached guess, which is on by default, can make GJK miss a deep overlap and makes
     answers depend on earlier ones. It is turned off by a flag that coal calls
     deprecated, but whose replacement does not turn it off.
     """
+    request.gjk_initial_guess = coal.GJKInitialGuess.DefaultGuess
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)
-        for request in requests:
-            request.gjk_initial_guess = coal.GJKInitialGuess.DefaultGuess
-            request.enable_cached_gjk_guess = False
+        request.enable_cached_gjk_guess = False

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -49,7 +49,7 @@ class CollisionWorld:
     standing: Mapping[str, Array]  # object -> T_world_object
     attached: Mapping[str, Array] = field(default_factory=dict)  # -> T_tool_object
     touch: TouchRules = field(default_factory=TouchRules)
-    only_base: bool = False
+    pair_filter: Callable[[Body, Body], bool] | None = None
 
     @classmethod
     def of_problem(cls, problem: Problem) -> CollisionWorld:
@@ -101,8 +101,12 @@ class CollisionWorld:
         return replace(self, touch=TouchRules(self.touch.fingers - {name}, supports))
 
     def base_alone(self) -> CollisionWorld:
-        """The world in which only the base's links are checked."""
-        return replace(self, only_base=True)
+        """The world in which arm, hand and what they carry are left out."""
+        return replace(self, pair_filter=_spare_the_arm)
+
+    def fingers_alone(self) -> CollisionWorld:
+        """The world in which only pairs with a finger link are checked."""
+        return replace(self, pair_filter=_with_a_finger)
 
     @property
     def model(self) -> pin.Model:
@@ -159,11 +163,23 @@ class CollisionWorld:
 
     @cached_property
     def _assembly(self) -> Assembly:
-        ignored = ("arm", "finger", "attached") if self.only_base else ()
         return assemble(
-            self.robot, self.scenery, self.standing, self.attached, self.touch, ignored
+            self.robot,
+            self.scenery,
+            self.standing,
+            self.attached,
+            self.touch,
+            self.pair_filter,
         )
 
     @cached_property
     def _checker(self) -> Checker:
         return Checker(self.model, self._assembly)
+
+
+def _spare_the_arm(first: Body, second: Body) -> bool:
+    return not {first.kind, second.kind} & {"arm", "finger", "attached"}
+
+
+def _with_a_finger(first: Body, second: Body) -> bool:
+    return "finger" in (first.kind, second.kind)

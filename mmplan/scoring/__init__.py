@@ -1,7 +1,18 @@
 """The score of a base placement and a grasp (paper, section IV.A): one term a file."""
 
+from mmplan.scoring.breakdown import Breakdown, LinkClutter
 from mmplan.scoring.outcome import End, Outcome
 from mmplan.scoring.score import TERMS, ScoreFunction, Scores
 from mmplan.scoring.term import Grasped, ScoreTerm
 
-__all__ = ["TERMS", "End", "Grasped", "Outcome", "ScoreFunction", "ScoreTerm", "Scores"]
+__all__ = [
+    "TERMS",
+    "Breakdown",
+    "End",
+    "Grasped",
+    "LinkClutter",
+    "Outcome",
+    "ScoreFunction",
+    "ScoreTerm",
+    "Scores",
+]

@@ -24,13 +24,14 @@ class Clutter:
     distance between the middle of the link's collision bodies and the centre of mass
     of the base in the same configuration, at most the inverse of the base's radius.
     The object in the hand is no obstacle and, its distance being the same for all
-    candidates, no link; the ground is no obstacle for the base's own links.
+    candidates, no link; the ground is no obstacle for the base's own links. A link
+    without any obstacle adds nothing, as it is clear of all in every candidate.
     """
 
     def __init__(self, robot: Robot, worlds: dict[End, CollisionWorld]) -> None:
         """Prepare for the obstacles of the world at each end, without the object."""
         self._distances = {end: LinkDistances(world) for end, world in worlds.items()}
-        self._weights = LinkWeights(robot)
+        self.weights = LinkWeights(robot)
         self.links = self._distances[End.START].links
         self._groups = _link_groups(robot, self.links)
         self._caches = {(end, g): RowCache() for end in worlds for g in self._groups}
@@ -42,13 +43,15 @@ class Clutter:
 
     def by_link(self, grasped: Grasped) -> Array:
         """The summands w_l d_l, (n, links), in the order of `links`."""
-        return self._weights(grasped.q) * self.distances(grasped)
+        d = self.distances(grasped)
+        return self.weights(grasped.q) * np.where(np.isinf(d), 0.0, d)
 
     def distances(self, grasped: Grasped) -> Array:
         """The distances d_l in m, (n, links), in the order of `links`.
 
         Those of the base's links depend on the base placement alone and those of the
-        links that do not move against the tool on the grasp alone.
+        links that do not move against the tool on the grasp alone. Infinite where a
+        link has no obstacle.
         """
         end, q = grasped.end, grasped.q
         d = np.empty((len(q), len(self.links)))

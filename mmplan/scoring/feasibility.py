@@ -50,7 +50,7 @@ class Feasibility:
         self._robot: Robot = problem.robot
         self._bounds = problem.base_bounds
         self._T_world_object = world.standing[object_name]
-        self._open_world = world
+        self._open_fingers = world.fingers_alone()
         self._closed_world = world.permit_touch(object_name, fingers=True)
         self._base_world = world.base_alone()
 
@@ -88,7 +88,7 @@ class Feasibility:
         free = np.flatnonzero(~self._closed_world.in_collision(q))
         q_open = q[free]
         q_open[:, self._robot.hand.indices] = opened[free]
-        hit = self._open_world.in_collision(q_open)
+        hit = self._open_fingers.in_collision(q_open)
         outcome[free] = np.where(hit, Outcome.HAND_OPEN_COLLISION, Outcome.SCORED)
         return outcome
 
@@ -101,7 +101,7 @@ class Feasibility:
         q_open = q.copy()
         q_open[:, self._robot.hand.indices] = opened
         found = [
-            self._closed_world.contacts(a) or self._open_world.contacts(b)
+            self._closed_world.contacts(a) or self._open_fingers.contacts(b)
             for a, b in zip(q, q_open, strict=True)
         ]
         return min((c for c in found if c), key=lambda c: c[0].depth, default=())

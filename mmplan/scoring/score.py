@@ -10,6 +10,7 @@ import numpy.typing as npt
 from mmplan.collision import CollisionWorld, Contact, HandCloser
 from mmplan.grasps import GraspFamily
 from mmplan.problem import Problem, Task
+from mmplan.scoring.breakdown import Breakdown, links_of
 from mmplan.scoring.clutter import Clutter
 from mmplan.scoring.feasibility import Feasibility
 from mmplan.scoring.grasp_quality import grasp_quality
@@ -34,6 +35,17 @@ class Scores(NamedTuple):
     terms: Array  # (n, 3)
     q: Array  # (n, nq)
     outcome: npt.NDArray[np.int8]  # (n,) of Outcome
+
+
+def term_factors(problem: Problem) -> Array:
+    """What the raw value of each term is multiplied by, in the order of `TERMS`, (3,)."""
+    settings, scales = problem.score, problem.robot.score_scales
+    factors = [
+        settings.grasp,
+        settings.manipulability / scales.manipulability,
+        settings.clutter / scales.clutter,
+    ]
+    return POINTS * np.array(factors)
 
 
 class Holds(NamedTuple):
@@ -74,14 +86,7 @@ class ScoreFunction:
         self.clutter = Clutter(
             robot, {e: w.without(task.object) for e, w in self.worlds.items()}
         )
-        settings, scales = problem.score, robot.score_scales
-        self._factors = POINTS * np.array(
-            [
-                settings.grasp,
-                settings.manipulability / scales.manipulability,
-                settings.clutter / scales.clutter,
-            ]
-        )
+        self.factors = term_factors(problem)
         self._holds = RowCache()
         self._bases = {end: RowCache() for end in End}
         self._scores = {end: RowCache() for end in End}
@@ -114,6 +119,18 @@ class ScoreFunction:
         return Holds(
             pose.reshape(-1, 4, 4), opened, closed, outcome[:, 0].astype(np.int8)
         )
+
+    def breakdown(self, end: End, q_base: Array, grasp: Array) -> Breakdown:
+        """The score of one base (b,) and grasp (g,) by term and by link."""
+        base, grasps = q_base[None], grasp[None]
+        score = self(end, base, grasps)
+        outcome = Outcome(score.outcome[0])
+        terms = dict(zip(TERMS, score.terms[0].tolist(), strict=True))
+        if outcome != Outcome.SCORED:
+            return Breakdown(outcome, 0.0, terms)
+        grasped = Grasped(end, score.q, self._number(base), self._number(grasps))
+        links = links_of(self.clutter, grasped, self.factors[TERMS.index("clutter")])
+        return Breakdown(outcome, float(score.total[0]), terms, links)
 
     def contacts(self, end: End, q_base: Array, grasp: Array) -> tuple[Contact, ...]:
         """What one base (b,) and grasp (g,) collide with, in the best of all branches.
@@ -212,7 +229,7 @@ class ScoreFunction:
             self.manipulability(grasped),
             self.clutter(grasped),
         ]
-        return np.stack(raw, axis=1) * self._factors
+        return np.stack(raw, axis=1) * self.factors
 
     def _number(self, rows: Array) -> npt.NDArray[np.int64]:
         """A number for each row, the same for equal rows."""
