@@ -1,0 +1,66 @@
+"""`mmplan robots`, `mmplan scenes`, `mmplan schema`: what is shipped."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from mmplan import assets
+from mmplan.commands.arguments import add_json
+from mmplan.commands.results import SOLVED, print_json
+
+
+def add(commands: Any) -> None:
+    """Add the commands to the parser's."""
+    for name, text, run in (
+        ("robots", "list the robots that are shipped", _robots),
+        ("scenes", "list the scenes that are shipped", _scenes),
+    ):
+        command = commands.add_parser(name, help=text, description=text)
+        add_json(command)
+        command.set_defaults(run=run)
+    text = "print the JSON schema of scene files"
+    schema = commands.add_parser("schema", help=text, description=text)
+    schema.set_defaults(run=_schema)
+
+
+def _robots(options: argparse.Namespace) -> int:
+    from mmplan.robot_file import load_robot_description
+
+    folder = assets.robots_folder()
+    return _list(
+        [
+            (
+                name,
+                load_robot_description(folder / name / assets.ROBOT_FILE).description,
+            )
+            for name in assets.robot_names()
+        ],
+        options.json,
+    )
+
+
+def _scenes(options: argparse.Namespace) -> int:
+    from mmplan.scene_reader import read_scene
+
+    return _list(
+        [(name, read_scene(name).section.description) for name in assets.scene_names()],
+        options.json,
+    )
+
+
+def _list(rows: list[tuple[str, str]], as_json: bool) -> int:
+    if as_json:
+        print_json([{"name": name, "description": text} for name, text in rows])
+    else:
+        width = max(len(name) for name, _ in rows)
+        for name, text in rows:
+            print(f"{name:<{width}}  {text}")
+    return SOLVED
+
+
+def _schema(_options: argparse.Namespace) -> int:
+    from mmplan.schema import scene_schema
+
+    print_json(scene_schema())
+    return SOLVED
