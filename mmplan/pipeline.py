@@ -40,10 +40,8 @@ def solve(problem: Problem, *, seed: int = 0, progress: Progress | None = None) 
         VerificationError: The tasks are proven one by one, but not in a row.
     """
     report: Progress = progress or _ignore
-    seeds = np.random.SeedSequence(seed).spawn(len(problem.tasks))
     rest, plans = problem, []
-    for number, sequence in enumerate(seeds):
-        rng = np.random.default_rng(sequence)
+    for number, rng in enumerate(task_generators(problem, seed)):
         plan = _solve_task(
             replace(rest, tasks=(problem.tasks[number],)), number, seed, rng, report
         )
@@ -58,6 +56,12 @@ def solve(problem: Problem, *, seed: int = 0, progress: Progress | None = None) 
     return replace(whole, verification=verification)
 
 
+def task_generators(problem: Problem, seed: int) -> list[np.random.Generator]:
+    """The random numbers of each task."""
+    sequences = np.random.SeedSequence(seed).spawn(len(problem.tasks))
+    return [np.random.default_rng(sequence) for sequence in sequences]
+
+
 def _ignore(what: str, done: int, of: int | None) -> None:
     """Nobody watches."""
 
@@ -66,15 +70,43 @@ def _solve_task(
     problem: Problem, number: int, seed: int, rng: np.random.Generator, report: Progress
 ) -> Plan:
     """The verified plan of a problem with one task, the `number`th of the scene."""
-    task = problem.tasks[0]
-    world = CollisionWorld.of_problem(problem)
-    names, family = grasp_family(problem.object(task.object))
-    score = ScoreFunction(problem, task, world, family)
+    score = score_function(problem)
     found = _optimize(score, rng, report)
-    motion = TaskMotion(problem, task, world)
+    plan, attempts = plan_candidates(score, found, seed, rng, report)
+    if plan is not None:
+        return plan
+    account = failure_report(number, score, found, attempts)
+    raise NoPlanError("\n".join(account.lines()), account)
+
+
+def score_function(
+    problem: Problem, world: CollisionWorld | None = None
+) -> ScoreFunction:
+    """The score of a problem's first task, in its world before that task."""
+    task = problem.tasks[0]
+    _, family = grasp_family(problem.object(task.object))
+    return ScoreFunction(
+        problem, task, world or CollisionWorld.of_problem(problem), family
+    )
+
+
+def plan_candidates(
+    score: ScoreFunction,
+    found: Optimization,
+    seed: int,
+    rng: np.random.Generator,
+    report: Progress | None = None,
+) -> tuple[Plan | None, tuple[Attempt, ...]]:
+    """The verified plan of the best candidate that has one, and the failures before.
+
+    `seed` is what the plan says that it was made from.
+    """
+    problem, task = score.problem, score.task
+    names, family = grasp_family(problem.object(task.object))
+    motion = TaskMotion(problem, task, score.worlds[End.START])
     attempts: list[Attempt] = []
     for k, triple in enumerate(found.candidates):
-        report("planning", k, len(found.candidates))
+        (report or _ignore)("planning", k, len(found.candidates))
         candidate = Candidate.of_triple(triple, score)
         segments = motion.plan(candidate, rng)
         if isinstance(segments, Blocked):
@@ -86,11 +118,10 @@ def _solve_task(
         )
         verification = examine(plan, problem)
         if verification.ok:
-            return replace(plan, verification=verification)
+            return replace(plan, verification=verification), tuple(attempts)
         fault = str(verification.faults[0])
         attempts.append(Attempt(triple.total, Blocked("verification", fault)))
-    account = failure_report(number, score, found, tuple(attempts))
-    raise NoPlanError("\n".join(account.lines()), account)
+    return None, tuple(attempts)
 
 
 def _optimize(
