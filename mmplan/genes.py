@@ -37,3 +37,12 @@ class GeneSpace:
         wrapped = self.lower + np.mod(genomes - self.lower, width)
         clipped = np.clip(genomes, self.lower, self.upper)
         return np.where(self.periodic, wrapped, clipped)
+
+    def apart(self, a: Array, b: Array) -> Array:
+        """How far genomes (..., d) are apart, as shares of the ranges, (..., d).
+
+        The short way round for a periodic gene; 0 for a gene that cannot vary.
+        """
+        width = np.where(self.range > 0.0, self.range, np.inf)
+        share = np.abs(a - b) / width
+        return np.where(self.periodic, np.minimum(share, 1.0 - share), share)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mmplan.genes import GeneSpace
 from mmplan.scoring import End
 from mmplan.shapes import Array
 
@@ -72,16 +73,13 @@ class Archive:
         return sorted(triples, key=lambda t: -t.total)
 
 
-def distinct(triples: Iterable[Triple], ranges: Array, most: int) -> list[Triple]:
-    """The first `most` triples that differ enough from all those before them.
-
-    `ranges` (genes,) are the widths of the grasp genes' intervals.
-    """
+def distinct(triples: Iterable[Triple], grasps: GeneSpace, most: int) -> list[Triple]:
+    """The first `most` triples that differ enough from all those before them."""
     kept: list[Triple] = []
     for triple in triples:
         if len(kept) == most:
             break
-        if all(_apart(triple, other, ranges) for other in kept):
+        if all(_apart(triple, other, grasps) for other in kept):
             kept.append(triple)
     return kept
 
@@ -96,9 +94,9 @@ def _best(
     return np.frombuffer(key), known[key]
 
 
-def _apart(a: Triple, b: Triple, ranges: Array) -> bool:
+def _apart(a: Triple, b: Triple, grasps: GeneSpace) -> bool:
     moved = max(
         float(np.linalg.norm(p - q)) for p, q in zip(a.q_base, b.q_base, strict=True)
     )
-    turned = np.max(np.abs(a.grasp - b.grasp) / np.where(ranges > 0, ranges, 1.0))
+    turned = np.max(grasps.apart(a.grasp, b.grasp))
     return moved > _BASE_APART or bool(turned > _GRASP_APART)

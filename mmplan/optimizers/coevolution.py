@@ -79,7 +79,7 @@ class CoEvolution:
         }
         grasps = {row.tobytes() for row in self._grasps}
         triples = archive.triples(grasps, bases)
-        return distinct(triples, self._space.grasps.range, most)
+        return distinct(triples, self._space.grasps, most)
 
     def _cycle_forever(self) -> _Search:
         while True:

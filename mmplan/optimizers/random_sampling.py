@@ -68,4 +68,4 @@ class RandomSampling:
 
     def candidates(self, archive: Archive, most: int) -> list[Triple]:
         """The best triples drawn; both ends are feasible."""
-        return distinct(archive.triples(), self._space.grasps.range, most)
+        return distinct(archive.triples(), self._space.grasps, most)
