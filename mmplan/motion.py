@@ -28,6 +28,8 @@ from mmplan.shapes import Array
 # is no room for it, it is shortened by these factors.
 DEFAULT_LENGTH = 0.1
 _FACTORS = (1.0, 0.5, 0.25)
+# The shares of the clearance wanted that a path is tried with.
+_SHARES = (1.0, 0.25, 0.0)
 _UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -128,14 +130,10 @@ class TaskMotion:
         """The way to the pick, and the pick on the winding that it arrives at."""
         turns = self._turns(pick)
         q_first = pick[0].path[0]
-        path, turn = self._search(
-            "transit",
-            self.world,
-            self.problem.q_start,
-            q_first + turns,
-            rng,
+        world, path, turn = self._search(
+            "transit", self.world, self.problem.q_start, q_first + turns, rng
         )
-        return _Part("transit", self.world, path), _turned(pick, turns[turn])
+        return _Part("transit", world, path), _turned(pick, turns[turn])
 
     def _transfer(
         self,
@@ -155,7 +153,7 @@ class TaskMotion:
         if len(place[0].path) == 1:
             world = self._resting(world, self.task.T_world_goal)
         turns = self._turns(place)
-        path, turn = self._search(
+        world, path, turn = self._search(
             "transfer", world, pick[-1].path[-1], place[0].path[0] + turns, rng
         )
         return _Part("transfer", world, path, carried), _turned(place, turns[turn])
@@ -167,15 +165,21 @@ class TaskMotion:
         q_start: Array,
         q_goals: Array,
         rng: np.random.Generator,
-    ) -> tuple[Array, int]:
-        """A path to one of several goals, and which goal it is."""
-        joints = transit_joints if name == "transit" else transfer_joints
-        result = plan_path(
-            world, q_start, q_goals, joints(self.problem), self.problem.planner, rng
+    ) -> tuple[CollisionWorld, Array, int]:
+        """A path to one of several goals, which goal it is, and the world it is for.
+
+        Paths that keep a clearance are tried first.
+        """
+        settings = self.problem.planner
+        joints = (transit_joints if name == "transit" else transfer_joints)(
+            self.problem
         )
-        if result.path is None or result.goal is None:
-            raise _BlockedError(name, result.message)
-        return result.path, result.goal
+        for clearance in dict.fromkeys(settings.clearance * share for share in _SHARES):
+            keeping = world.keeping(clearance)
+            result = plan_path(keeping, q_start, q_goals, joints, settings, rng)
+            if result.path is not None and result.goal is not None:
+                return keeping, result.path, result.goal
+        raise _BlockedError(name, result.message)
 
     def _straight(
         self, name: str, world: CollisionWorld, q: Array, direction: Array

@@ -93,6 +93,7 @@ class PlannerSettings:
     (how many distinct goals of the optimizer are tried), so that one seed gives one
     plan; `time_limit` (s, for one path) is the safety net. `resolution` (m) is the
     longest way that any point of the robot moves between two collision checks.
+    Paths keep `clearance` (m) from all things where their ends and the room allow it.
     `shortcuts` is the number of attempts at shortening a path.
     """
 
@@ -101,6 +102,7 @@ class PlannerSettings:
     candidates: int = 20
     time_limit: float = 10.0
     resolution: float = 0.01
+    clearance: float = 0.002
     shortcuts: int = 100
 
 

@@ -40,7 +40,7 @@ class Assembly(NamedTuple):
     geometry: pin.GeometryModel
     bodies: tuple[Body, ...]
     pairs: npt.NDArray[np.int64]  # (p, 2), indices into bodies
-    allowed_depth: Array  # (p,), m
+    allowed_depth: Array  # (p,), m, negative where a distance must be kept
 
 
 def assemble(
@@ -50,10 +50,12 @@ def assemble(
     attached: Mapping[str, Array],
     touch: TouchRules,
     pair_filter: Callable[[Body, Body], bool] | None = None,
+    clearance: float = 0.0,
 ) -> Assembly:
     """Put the world together; see `CollisionWorld` for which pairs are checked.
 
-    Where there is a `pair_filter`, only the pairs that it accepts are.
+    Where there is a `pair_filter`, only the pairs that it accepts are. Pairs with the
+    scene and with what is carried count as touching from `clearance` (m) on.
     """
     geometry = robot.geometry.clone()
     bodies = [
@@ -74,7 +76,7 @@ def assemble(
     if pair_filter is not None:
         pairs = [(i, j) for i, j in pairs if pair_filter(bodies[i], bodies[j])]
     _set_pairs(geometry, pairs)
-    depth = [_allowed_depth(bodies[i], bodies[j], touch) for i, j in pairs]
+    depth = [_allowed_depth(bodies[i], bodies[j], touch, clearance) for i, j in pairs]
     return Assembly(
         geometry,
         tuple(bodies),
@@ -123,9 +125,11 @@ def _may_touch(mover: Body, scene: Body, touch: TouchRules) -> bool:
     return mover.kind == "finger" and scene.owner in touch.fingers
 
 
-def _allowed_depth(a: Body, b: Body, touch: TouchRules) -> float:
+def _allowed_depth(a: Body, b: Body, touch: TouchRules, clearance: float) -> float:
+    robot = ("base", "arm", "finger")
+    needed = 0.0 if a.kind in robot and b.kind in robot else -clearance
     depths = touch.supports
-    return depths.get((a.owner, b.owner), depths.get((b.owner, a.owner), 0.0))
+    return depths.get((a.owner, b.owner), depths.get((b.owner, a.owner), needed))
 
 
 def _set_pairs(geometry: pin.GeometryModel, pairs: list[tuple[int, int]]) -> None:

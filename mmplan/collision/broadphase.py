@@ -1,13 +1,13 @@
 """Which pairs of bodies may touch, judged by their bounds, many configurations at once.
 
 Pinocchio's broadphase managers update every body of the scene for every configuration.
-Here what stands still is bounded once, in two levels: the bodies of one owner, such as
-a rack with its tines, are looked at one by one only where something is near them.
+Here what stands still is bounded once, and bodies are looked at by owner first: the
+tines of a rack, or the pieces of a glass, one by one only where something is near.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,16 +16,18 @@ import pinocchio as pin
 
 from mmplan.collision.assembly import Body
 from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
+from mmplan.collision.groups import Groups
 from mmplan.kinematics import ForwardKinematics
 from mmplan.shapes import Array
 
 Indices = npt.NDArray[np.int64]
+Mask = npt.NDArray[np.bool_]
 
 # Added to all bounds so that rounding never hides a touch, m.
 _PADDING = 1e-6
-# Configurations looked at in one go, so that the arrays stay in the cache.
-_CHUNK = 256
-_NONE = np.zeros(0, dtype=np.int64)
+# Configurations looked at in one go: few at first, as a hit among them may be enough,
+# and not so many that the arrays leave the cache.
+_FIRST_CHUNK, _LAST_CHUNK = 16, 256
 
 
 class Suspects(NamedTuple):
@@ -33,6 +35,17 @@ class Suspects(NamedTuple):
 
     row: Indices
     pair: Indices
+
+
+class _SelfPairs(NamedTuple):
+    """Pairs of moving bodies, by the links that they belong to."""
+
+    by_links: Groups
+    first_link: Indices  # of each group
+    second_link: Indices
+    first: Indices  # moving bodies, of each pair
+    second: Indices
+    pair: Indices  # its id
 
 
 class Broadphase:
@@ -44,135 +57,132 @@ class Broadphase:
         geometry: pin.GeometryModel,
         bodies: Sequence[Body],
         pairs: Indices,
+        margin: float = 0.0,
     ) -> None:
-        """Bound every body; `pairs` (p, 2) are indices into `bodies`."""
+        """Bound every body; `pairs` (p, 2) are indices into `bodies`.
+
+        Bodies nearer than `margin` (m) count as touching.
+        """
         self._kinematics = ForwardKinematics(model)
-        paired = set(pairs.ravel().tolist())
-        self._moving = [i for i in sorted(paired) if bodies[i].joint != 0]
-        self._joints = [bodies[i].joint for i in self._moving]
-        self._local, self._placements = _stacked(geometry, self._moving)
-        static = sorted(
-            (i for i in paired if bodies[i].joint == 0),
-            key=lambda i: (bodies[i].owner, i),
+        paired = sorted(
+            set(pairs.ravel().tolist()), key=lambda i: _group_key(bodies[i])
         )
-        self._static = moved_bounds(*_stacked(geometry, static))
-        self._groups = _Groups([bodies[i].owner for i in static], self._static)
-        self._pair_ids, self._moving_pairs = _split(self._moving, static, pairs)
-        self._watched = self._groups.any_of(self._pair_ids >= 0)  # (moving, groups)
+        moving = [i for i in paired if bodies[i].joint != 0]
+        static = [i for i in paired if bodies[i].joint == 0]
+        self._bodies = _in_joints(geometry, moving, _PADDING + margin)
+        self._joints = np.array([bodies[i].joint for i in moving], dtype=np.int64)
+        self._links = Groups([_group_key(bodies[i]) for i in moving])
+        self._link_bounds = self._links.around(self._bodies)
+        self._link_joints = self._joints[self._links.starts]
+        self._static = _in_joints(geometry, static, _PADDING)
+        self._owners = Groups([_group_key(bodies[i]) for i in static])
+        self._owner_bounds = self._owners.around(self._static)
+        self._pair_ids = _pair_ids(moving, static, pairs)
+        watched = self._owners.any_of(self._pair_ids >= 0)
+        self._watched = self._links.any_of(watched.T).T  # (links, owners)
+        self._self_pairs = _self_pairs(moving, pairs, self._links)
 
-    def suspects(self, q: Array) -> Suspects:
-        """The pairs that may touch at configurations q (n, nq)."""
-        found = [Suspects(_NONE, _NONE)]
-        for start in range(0, len(q), _CHUNK):
-            bounds = self.moving_bounds(q[start : start + _CHUNK])
-            for row, pair in (self._among_moving(bounds), self._with_static(bounds)):
-                found.append(Suspects(row + start, pair))
-        row, pair = (np.concatenate(part) for part in zip(*found, strict=True))
-        order = np.argsort(row, kind="stable")
-        return Suspects(row[order], pair[order])
+    def suspects(self, q: Array) -> Iterator[Suspects]:
+        """The pairs that may touch at configurations q (n, nq), in batches by row."""
+        start, size = 0, _FIRST_CHUNK
+        while start < len(q):
+            T = self._kinematics(q[start : start + size])
+            links = moved_bounds(self._link_bounds, T[:, self._link_joints])
+            found = self._with_static(T, links), self._among_moving(T, links)
+            for row, pair in found:
+                yield Suspects(row + start, pair)
+            start, size = start + size, min(4 * size, _LAST_CHUNK)
 
-    def moving_bounds(self, q: Array) -> Bounds:
-        """Bounds (n, moving, 3) of the bodies that move with the robot."""
-        T = self._kinematics(q)[:, self._joints] @ self._placements
-        return moved_bounds(self._local, T)
+    def _with_static(self, T: Array, links: Bounds) -> Suspects:
+        """Link against owner, then body against owner, then body against body."""
+        near = _overlap(_each(links), self._owner_bounds) & self._watched
+        row, link, owner = np.nonzero(near)
+        repeat, body = self._links.members(link)
+        row, owner = row[repeat], owner[repeat]
+        bounds = self._bounds(T, row, body)
+        close = _overlap(bounds, _taken(self._owner_bounds, owner))
+        row, body, owner = row[close], body[close], owner[close]
+        bounds = _taken(bounds, close)
+        repeat, other = self._owners.members(owner)
+        pair = self._pair_ids[body[repeat], other]
+        touching = _overlap(_taken(bounds, repeat), _taken(self._static, other))
+        touching &= pair >= 0
+        return Suspects(row[repeat][touching], pair[touching])
 
-    def _among_moving(self, bounds: Bounds) -> Suspects:
-        first, second, pair = self._moving_pairs
-        a = Bounds(*(part[:, first] for part in bounds))
-        b = Bounds(*(part[:, second] for part in bounds))
-        row, which = np.nonzero(_overlap(a, b))
-        return Suspects(row, pair[which])
+    def _among_moving(self, T: Array, links: Bounds) -> Suspects:
+        """Link against link, then body against body."""
+        pairs = self._self_pairs
+        first, second = (
+            Bounds(links.centre[:, which], links.half[:, which])
+            for which in (pairs.first_link, pairs.second_link)
+        )
+        row, both = np.nonzero(_overlap(first, second))
+        repeat, which = pairs.by_links.members(both)
+        row = row[repeat]
+        one = self._bounds(T, row, pairs.first[which])
+        other = self._bounds(T, row, pairs.second[which])
+        touching = _overlap(one, other)
+        return Suspects(row[touching], pairs.pair[which[touching]])
 
-    def _with_static(self, bounds: Bounds) -> Suspects:
-        moving = Bounds(*(part[:, :, None] for part in bounds))
-        near = _overlap(moving, self._groups.bounds) & self._watched
-        row, body, group = np.nonzero(near)
-        repeat, member = self._groups.members(group)
-        row, body = row[repeat], body[repeat]
-        pair = self._pair_ids[body, member]
-        mover = Bounds(*(part[row, body] for part in bounds))
-        fixed = Bounds(*(part[member] for part in self._static))
-        touching = (pair >= 0) & _overlap(mover, fixed)
-        return Suspects(row[touching], pair[touching])
-
-
-class _Groups:
-    """Static bodies by owner; each group is a run of consecutive bodies."""
-
-    def __init__(self, owners: list[str], bounds: Bounds) -> None:
-        names = list(dict.fromkeys(owners))
-        self._sizes = np.array([owners.count(name) for name in names], dtype=np.int64)
-        self._starts = np.concatenate([[0], np.cumsum(self._sizes)[:-1]]).astype(int)
-        if names:
-            low = np.minimum.reduceat(bounds.centre - bounds.half, self._starts)
-            high = np.maximum.reduceat(bounds.centre + bounds.half, self._starts)
-        else:
-            low = high = np.empty((0, 3))
-        self.bounds = Bounds((low + high) / 2, (high - low) / 2)
-
-    def any_of(self, mask: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-        """Whether any member is true: (m, static) -> (m, groups)."""
-        if len(self._sizes) == 0:
-            return mask
-        return np.logical_or.reduceat(mask, self._starts, axis=1)
-
-    def members(self, group: Indices) -> tuple[Indices, Indices]:
-        """All members of the groups (k,): which of the k, and the static body."""
-        sizes = self._sizes[group]
-        repeat = np.repeat(np.arange(len(group)), sizes)
-        within = np.arange(len(repeat)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
-        return repeat, self._starts[group][repeat] + within
+    def _bounds(self, T: Array, row: Indices, body: Indices) -> Bounds:
+        """Bounds (k, 3) of moving bodies, each in one configuration."""
+        return moved_bounds(_taken(self._bodies, body), T[row, self._joints[body]])
 
 
-def _overlap(a: Bounds, b: Bounds) -> npt.NDArray[np.bool_]:
+def _group_key(body: Body) -> tuple[str, int]:
+    return body.owner, body.joint
+
+
+def _each(bounds: Bounds) -> Bounds:
+    """Bounds (n, m, 3) ready to be compared with each of others, (n, m, 1, 3)."""
+    return Bounds(bounds.centre[:, :, None], bounds.half[:, :, None])
+
+
+def _taken(bounds: Bounds, which: Indices | Mask) -> Bounds:
+    return Bounds(bounds.centre[which], bounds.half[which])
+
+
+def _overlap(a: Bounds, b: Bounds) -> Mask:
     """Whether boxes overlap, broadcast over all but the last axis."""
-    a_low, a_high = _corners(a)
-    b_low, b_high = _corners(b)
-    overlap: npt.NDArray[np.bool_] = a_low[0] <= b_high[0]
-    for low, high in (
-        (b_low[0], a_high[0]),
-        (a_low[1], b_high[1]),
-        (b_low[1], a_high[1]),
-        (a_low[2], b_high[2]),
-        (b_low[2], a_high[2]),
-    ):
-        overlap &= low <= high
+    overlap: Mask = np.all(np.abs(a.centre - b.centre) <= a.half + b.half, axis=-1)
     return overlap
 
 
-def _corners(bounds: Bounds) -> tuple[Array, Array]:
-    """Lower and upper corners with the axis first, contiguous, (3, ...)."""
-    low = np.moveaxis(bounds.centre - bounds.half, -1, 0)
-    high = np.moveaxis(bounds.centre + bounds.half, -1, 0)
-    return np.ascontiguousarray(low), np.ascontiguousarray(high)
-
-
-def _stacked(geometry: pin.GeometryModel, indices: list[int]) -> tuple[Bounds, Array]:
-    """Padded bounds (m, 3) in the bodies' own frames and their placements (m, 4, 4)."""
+def _in_joints(
+    geometry: pin.GeometryModel, indices: list[int], padding: float
+) -> Bounds:
+    """Padded bounds (m, 3) of bodies in the frames of the joints that move them."""
     objects = [geometry.geometryObjects[i] for i in indices]
     local = [local_bounds(o.geometry) for o in objects]
-    bounds = Bounds(
-        np.array([b.centre for b in local]).reshape(-1, 3),
-        np.array([b.half for b in local]).reshape(-1, 3) + _PADDING,
-    )
+    centre = np.array([b.centre for b in local]).reshape(-1, 3)
+    half = np.array([b.half for b in local]).reshape(-1, 3)
     placements = np.array([o.placement.homogeneous for o in objects])
-    return bounds, placements.reshape(-1, 4, 4)
+    bounds = moved_bounds(Bounds(centre, half), placements.reshape(-1, 4, 4))
+    return Bounds(bounds.centre, bounds.half + padding)
 
 
-def _split(
-    moving: list[int], static: list[int], pairs: Indices
-) -> tuple[Indices, tuple[Indices, Indices, Indices]]:
-    """Pair ids of moving with static bodies, -1 for none, and pairs of moving ones."""
+def _pair_ids(moving: list[int], static: list[int], pairs: Indices) -> Indices:
+    """Pair ids of moving with static bodies, (moving, static), -1 for none."""
     row = {body: k for k, body in enumerate(moving)}
     column = {body: k for k, body in enumerate(static)}
     ids = np.full((len(moving), len(static)), -1, dtype=np.int64)
-    among = []
     for k, (i, j) in enumerate(pairs.tolist()):
-        if i in row and j in row:
-            among.append((row[i], row[j], k))
-        elif i in row:
+        if i in row and j in column:
             ids[row[i], column[j]] = k
-        else:
+        elif j in row and i in column:
             ids[row[j], column[i]] = k
-    first, second, pair = np.array(among, dtype=np.int64).reshape(-1, 3).T
-    return ids, (first, second, pair)
+    return ids
+
+
+def _self_pairs(moving: list[int], pairs: Indices, links: Groups) -> _SelfPairs:
+    """The pairs of moving bodies, sorted by the links that they belong to."""
+    row = {body: k for k, body in enumerate(moving)}
+    among = sorted(
+        (int(links.of[row[i]]), int(links.of[row[j]]), row[i], row[j], k)
+        for k, (i, j) in enumerate(pairs.tolist())
+        if i in row and j in row
+    )
+    table = np.array(among, dtype=np.int64).reshape(-1, 5)
+    by_links = Groups([tuple(r) for r in table[:, :2].tolist()])
+    first_link, second_link = table[by_links.starts, :2].T
+    return _SelfPairs(by_links, first_link, second_link, *table[:, 2:].T)

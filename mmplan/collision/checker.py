@@ -28,8 +28,9 @@ class Checker:
         self._data = model.createData()
         self._geometry_data = self._geometry.createData()
         make_exact(self._geometry_data, assembly.allowed_depth)
+        margin = max(0.0, -float(np.min(assembly.allowed_depth, initial=0.0)))
         self._broadphase = Broadphase(
-            model, self._geometry, assembly.bodies, assembly.pairs
+            model, self._geometry, assembly.bodies, assembly.pairs, margin
         )
 
     def in_collision(self, q: Array) -> npt.NDArray[np.bool_]:
@@ -52,15 +53,18 @@ class Checker:
 
     def _suspects(self, q: Array) -> Iterator[tuple[int, int]]:
         """Configuration and pair, with the bodies placed in that configuration."""
-        rows, pairs = self._broadphase.suspects(q)
         placed = -1
-        for row, pair in zip(rows.tolist(), pairs.tolist(), strict=True):
-            if row != placed:
-                pin.updateGeometryPlacements(
-                    self._model, self._data, self._geometry, self._geometry_data, q[row]
-                )
-                placed = row
-            yield row, pair
+        for rows, pairs in self._broadphase.suspects(q):
+            for row, pair in zip(rows.tolist(), pairs.tolist(), strict=True):
+                if row != placed:
+                    self._place(q[row])
+                    placed = row
+                yield row, pair
+
+    def _place(self, q: Array) -> None:
+        pin.updateGeometryPlacements(
+            self._model, self._data, self._geometry, self._geometry_data, q
+        )
 
     def _collides(self, pair: int) -> bool:
         return bool(pin.computeCollision(self._geometry, self._geometry_data, pair))

@@ -50,6 +50,7 @@ class CollisionWorld:
     attached: Mapping[str, Array] = field(default_factory=dict)  # -> T_tool_object
     touch: TouchRules = field(default_factory=TouchRules)
     pair_filter: Callable[[Body, Body], bool] | None = None
+    clearance: float = 0.0
 
     @classmethod
     def of_problem(cls, problem: Problem) -> CollisionWorld:
@@ -108,6 +109,13 @@ class CollisionWorld:
         """The world in which only pairs with a finger link are checked."""
         return replace(self, pair_filter=_with_a_finger)
 
+    def keeping(self, clearance: float) -> CollisionWorld:
+        """The world in which a distance (m) below `clearance` counts as collision.
+
+        Except for the robot's links among themselves and for permitted touches.
+        """
+        return replace(self, clearance=clearance)
+
     @property
     def model(self) -> pin.Model:
         """The robot's kinematic model."""
@@ -130,7 +138,10 @@ class CollisionWorld:
 
     @property
     def allowed_depth(self) -> Array:
-        """How deep (m) the two bodies of each pair may overlap, (p,)."""
+        """How deep (m) the two bodies of each pair may overlap, (p,).
+
+        Negative where they must keep a distance.
+        """
         return self._assembly.allowed_depth
 
     def owner_of(self, index: int) -> str:
@@ -170,6 +181,7 @@ class CollisionWorld:
             self.attached,
             self.touch,
             self.pair_filter,
+            self.clearance,
         )
 
     @cached_property
