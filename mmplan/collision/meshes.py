@@ -27,15 +27,17 @@ Triangles = npt.NDArray[np.int64]  # (t, 3), indices into the vertices
 def convex_pieces(mesh: Mesh) -> list[Array]:
     """The corners (m, 3) of convex pieces that together fill the mesh.
 
-    A closed convex mesh is one piece. Any other is decomposed by CoACD once and the
-    pieces are kept in the user's cache folder under the hash of the mesh.
+    A convex mesh is one piece. Any other is decomposed by CoACD once and the pieces
+    are kept in the user's cache folder under the hash of the mesh. Between pieces there
+    may be cracks of about 1e-4 of the mesh's size.
 
     Raises:
-        InputError: The mesh cannot be read, is empty or flat, or is not closed and
+        InputError: The mesh cannot be read, is empty, flat or not closed, or is not
             convex and the extra `meshes` is not installed.
     """
     vertices, triangles = _load(mesh)
-    if _is_convex(vertices, triangles):
+    hull_volume = hull(vertices).computeVolume()
+    if _volume(vertices, triangles) * _CONVEX_VOLUME_RATIO >= hull_volume:
         return [vertices]
     return _decomposed(mesh, vertices, triangles)
 
@@ -58,10 +60,8 @@ def _load(mesh: Mesh) -> tuple[Array, Triangles]:
     # coal's triangles raise no IndexError past their end, so that list() fails
     corners = [model.tri_indices(i) for i in range(model.num_tris)]
     triangles = np.array([(c[0], c[1], c[2]) for c in corners], dtype=np.int64)
-    if not np.isfinite(vertices).all():
-        raise InputError(f"{mesh.path}: this mesh has a vertex that is not finite")
-    if np.linalg.matrix_rank(vertices - vertices.mean(axis=0), tol=1e-9) < 3:
-        raise InputError(f"{mesh.path}: this mesh is flat; a closed solid is needed")
+    if fault := _fault(vertices, triangles):
+        raise InputError(f"{mesh.path}: this mesh {fault}")
     return vertices, triangles
 
 
@@ -72,12 +72,18 @@ def _reason(error: Exception) -> str:
     return cause.partition("\n")[0] or name or str(error)
 
 
-def _is_convex(vertices: Array, triangles: Triangles) -> bool:
-    """Whether the mesh is closed and fills its hull."""
+def _fault(vertices: Array, triangles: Triangles) -> str | None:
+    """Why the mesh is no solid, None if it is one."""
+    if not np.isfinite(vertices).all():
+        return "has a vertex that is not finite"
+    if np.linalg.matrix_rank(vertices - vertices.mean(axis=0), tol=1e-9) < 3:
+        return "is flat; a closed solid is needed"
     if not _is_closed(vertices, triangles):
-        return False
-    volume = _volume(vertices, triangles)
-    return bool(volume * _CONVEX_VOLUME_RATIO >= hull(vertices).computeVolume())
+        return (
+            "is not closed: some edge has a triangle on one side only, or two that do "
+            "not face the same way"
+        )
+    return None
 
 
 def _is_closed(vertices: Array, triangles: Triangles) -> bool:
@@ -116,8 +122,8 @@ def _coacd(mesh: Mesh, vertices: Array, triangles: Triangles) -> list[Array]:
         import coacd
     except ImportError as error:
         raise InputError(
-            f"{mesh.path}: this mesh is not closed and convex; to cut it into convex "
-            "pieces install the extra: pip install 'mmplan[meshes]'"
+            f"{mesh.path}: this mesh is not convex; to cut it into convex pieces "
+            "install the extra: pip install 'mmplan[meshes]'"
         ) from error
     coacd.set_log_level("error")
     parts = coacd.run_coacd(
@@ -134,7 +140,7 @@ def _cache_folder() -> Path:
 def _read(path: Path) -> list[Array] | None:
     """The pieces in a file of the cache; None where there is no sound one."""
     try:
-        with np.load(path) as pieces:
+        with path.open("rb") as file, np.load(file) as pieces:
             return [pieces[f"arr_{i}"] for i in range(len(pieces.files))]
     except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile):
         return None
