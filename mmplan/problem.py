@@ -98,8 +98,8 @@ class PlannerSettings:
     """
 
     name: str = "RRTConnect"
-    iterations: int = 20_000
-    candidates: int = 20
+    iterations: int = 5_000
+    candidates: int = 10
     time_limit: float = 10.0
     resolution: float = 0.01
     clearance: float = 0.002

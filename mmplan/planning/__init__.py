@@ -8,7 +8,7 @@ from mmplan.planning.joints import (
     transfer_joints,
     transit_joints,
 )
-from mmplan.planning.paths import Outcome, PathResult, plan_path
+from mmplan.planning.paths import PathOutcome, PathResult, plan_path
 from mmplan.planning.planners import available_planners, require_planner
 from mmplan.planning.straight import ShortMotion, hand_motion, straight_motion
 from mmplan.planning.timing import TimedPath, TimingResult, TimingSettings, time_path
@@ -17,8 +17,8 @@ from mmplan.planning.world import PlanningWorld
 __all__ = [
     "MotionLimits",
     "MovingJoints",
-    "Outcome",
     "PathChecker",
+    "PathOutcome",
     "PathResult",
     "PlanningWorld",
     "ShortMotion",

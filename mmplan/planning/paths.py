@@ -17,7 +17,7 @@ from mmplan.problem import PlannerSettings
 from mmplan.shapes import Array, read_only
 
 
-class Outcome(Enum):
+class PathOutcome(Enum):
     """How the planning of a path ended."""
 
     FOUND = "found"
@@ -36,7 +36,7 @@ class PathResult:
     of the robot move.
     """
 
-    outcome: Outcome
+    outcome: PathOutcome
     message: str  # one line for people
     path: Array | None = None  # (n, nq) waypoints, straight lines between them
     goal: int | None = None  # which of the goals it reaches
@@ -78,11 +78,11 @@ def plan_path(
     checker = PathChecker(world, settings.resolution)
     fault = _fault(world, q_start, joints)
     if fault:
-        return _failure(checker, Outcome.INVALID_START, f"the start: {fault}")
+        return _failure(checker, PathOutcome.INVALID_START, f"the start: {fault}")
     faults = [_fault(world, q, joints) for q in q_goals]
     usable = np.array([i for i, f in enumerate(faults) if f is None], dtype=np.int64)
     if not len(usable):
-        return _failure(checker, Outcome.INVALID_GOAL, f"the goal: {faults[0]}")
+        return _failure(checker, PathOutcome.INVALID_GOAL, f"the goal: {faults[0]}")
     straight = _straight_path(checker, q_start, q_goals[usable])
     seed = int(rng.integers(1, 2**31))
     if straight is not None:
@@ -140,7 +140,7 @@ def _success(
     goal = int(np.flatnonzero(np.all(q_goals == path[-1], axis=1))[0])
     length = path_length(path, checker.sweep.weights)
     return PathResult(
-        outcome=Outcome.FOUND,
+        outcome=PathOutcome.FOUND,
         message=f"a path of {len(path)} waypoints after {iterations} iterations",
         path=read_only(path),
         goal=goal,
@@ -151,18 +151,18 @@ def _success(
     )
 
 
-def _failure(checker: PathChecker, outcome: Outcome, message: str) -> PathResult:
+def _failure(checker: PathChecker, outcome: PathOutcome, message: str) -> PathResult:
     return PathResult(outcome, message, states=checker.states, edges=checker.edges)
 
 
 def _exhausted(
     checker: PathChecker, found: Search, settings: PlannerSettings
 ) -> PathResult:
-    outcome = Outcome.GAVE_UP
+    outcome = PathOutcome.GAVE_UP
     if found.out_of_time:
-        outcome = Outcome.TIME_LIMIT
+        outcome = PathOutcome.TIME_LIMIT
     elif found.iterations >= settings.iterations:
-        outcome = Outcome.ITERATIONS
+        outcome = PathOutcome.ITERATIONS
     message = (
         f"{outcome.value} after {found.iterations} iterations and {checker.edges} "
         f"edges: {found.start_tree} states connected to the start, "

@@ -5,7 +5,7 @@ import pytest
 
 from mmplan.exceptions import InputError
 from mmplan.planning import (
-    Outcome,
+    PathOutcome,
     PathChecker,
     available_planners,
     plan_path,
@@ -45,7 +45,7 @@ def gap(stick_among):
 def test_every_state_of_a_path_is_valid(gap, stick_joints, seed):
     rng = np.random.default_rng(seed)
     result = plan_path(gap, LEFT, RIGHT, stick_joints, SETTINGS, rng)
-    assert result.outcome is Outcome.FOUND
+    assert result.outcome is PathOutcome.FOUND
     assert np.array_equal(result.path[0], LEFT)
     assert np.array_equal(result.path[-1], RIGHT)
     # Checks are RESOLUTION apart: nothing is deeper in a wall than half of that.
@@ -125,7 +125,7 @@ def test_a_failed_search_says_how_far_it_got(stick_among, stick_joints):
     world = stick_among(**CELL)
     rng = np.random.default_rng(0)
     result = plan_path(world, LEFT, RIGHT, stick_joints, SETTINGS, rng)
-    assert result.outcome is Outcome.ITERATIONS
+    assert result.outcome is PathOutcome.ITERATIONS
     assert result.iterations == SETTINGS.iterations
     assert result.path is None
     assert 0.0 < result.gap < 2.5
@@ -150,7 +150,7 @@ def test_the_time_limit_is_a_safety_net(stick_among, stick_joints):
     world = stick_among(**CELL)
     rng = np.random.default_rng(0)
     result = plan_path(world, LEFT, RIGHT, stick_joints, settings, rng)
-    assert result.outcome is Outcome.TIME_LIMIT
+    assert result.outcome is PathOutcome.TIME_LIMIT
     assert result.iterations < 10**9
 
 
@@ -159,7 +159,7 @@ def test_a_planner_that_gives_up_says_so(monkeypatch, gap, stick_joints):
     monkeypatch.setattr("mmplan.planning.paths.search", lambda *_: nothing)
     rng = np.random.default_rng(0)
     result = plan_path(gap, LEFT, RIGHT, stick_joints, SETTINGS, rng)
-    assert result.outcome is Outcome.GAVE_UP
+    assert result.outcome is PathOutcome.GAVE_UP
     assert "3 states connected to the start, 1 to the goal, 1.50 m" in result.message
 
 
@@ -179,13 +179,13 @@ def test_what_is_wrong_with_the_ends_is_said_by_name(gap, stick_joints):
     rng = np.random.default_rng(0)
     inside, beyond = np.array([0.0, -1.0, 0.0]), np.array([2.5, 0.0, 0.0])
     start = plan_path(gap, inside, RIGHT, stick_joints, SETTINGS, rng)
-    assert start.outcome is Outcome.INVALID_START
+    assert start.outcome is PathOutcome.INVALID_START
     assert start.message == "the start: stick touches lower"
     goal = plan_path(gap, LEFT, inside, stick_joints, SETTINGS, rng)
-    assert goal.outcome is Outcome.INVALID_GOAL
+    assert goal.outcome is PathOutcome.INVALID_GOAL
     assert goal.message == "the goal: stick touches lower"
     goal = plan_path(gap, LEFT, beyond, stick_joints, SETTINGS, rng)
-    assert goal.outcome is Outcome.INVALID_GOAL
+    assert goal.outcome is PathOutcome.INVALID_GOAL
     assert goal.message == "the goal: x = 2.5 is outside [-2, 2]"
 
 

@@ -1,0 +1,142 @@
+"""From a candidate to the timed segments of a task."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from mmplan.candidate import Candidate
+from mmplan.collision import CollisionWorld
+from mmplan.ik.windings import windings
+from mmplan.motion.parts import Blocked, BlockedError, Part
+from mmplan.motion.short_motions import ShortMotions
+from mmplan.plan import Segment
+from mmplan.planning import (
+    MovingJoints,
+    PathOutcome,
+    motion_limits,
+    plan_path,
+    time_path,
+    transfer_joints,
+    transit_joints,
+)
+from mmplan.problem import Problem, Task
+from mmplan.shapes import Array
+
+# The shares of the clearance wanted that a path is tried with.
+_SHARES = (1.0, 0.25, 0.0)
+_ENDS_IN_THE_WAY = (PathOutcome.INVALID_START, PathOutcome.INVALID_GOAL)
+
+
+@dataclass(frozen=True, eq=False)
+class TaskMotion:
+    """Plans the motion of one task for one candidate after the other."""
+
+    problem: Problem
+    task: Task
+    world: CollisionWorld  # the object at its start
+
+    def plan(
+        self, candidate: Candidate, rng: np.random.Generator
+    ) -> tuple[Segment, ...] | Blocked:
+        """The segments of the whole motion, or what stood in its way."""
+        try:
+            parts = self._parts(candidate, rng)
+            return tuple(self._timed(part) for part in parts if part.moves)
+        except BlockedError as error:
+            return error.blocked
+
+    @cached_property
+    def _short(self) -> ShortMotions:
+        return ShortMotions(self.problem, self.task, self.world)
+
+    def _parts(self, candidate: Candidate, rng: np.random.Generator) -> list[Part]:
+        """All segments in order, planned the short ones first, as they fail soonest."""
+        carrying = self.world.attach(self.task.object, candidate.T_tool_object)
+        pick = self._short.pick(candidate, carrying)
+        place = self._short.place(candidate, carrying)
+        transit, pick = self._transit(pick, rng)
+        transfer, place = self._transfer(pick, place, carrying, rng)
+        return [transit, *pick, transfer, *place]
+
+    def _transit(
+        self, pick: list[Part], rng: np.random.Generator
+    ) -> tuple[Part, list[Part]]:
+        """The way to the pick, and the pick on the winding that it arrives at."""
+        turns = self._turns(pick)
+        start, goals = self.problem.q_start, pick[0].path[0] + turns
+        joints = transit_joints(self.problem)
+        transit, turn = self._search("transit", self.world, start, goals, joints, rng)
+        return transit, [part.turned(turns[turn]) for part in pick]
+
+    def _transfer(
+        self,
+        pick: list[Part],
+        place: list[Part],
+        carrying: CollisionWorld,
+        rng: np.random.Generator,
+    ) -> tuple[Part, list[Part]]:
+        """The way from pick to place, and the place on the winding it arrives at.
+
+        Where there is no lift or lower the object starts or ends in contact.
+        """
+        world = carrying
+        if not pick[-1].moves:
+            world = self._short.resting(world, self.world.standing[self.task.object])
+        if not place[0].moves:
+            world = self._short.resting(world, self.task.T_world_goal)
+        turns = self._turns(place)
+        start, goals = pick[-1].path[-1], place[0].path[0] + turns
+        joints = transfer_joints(self.problem)
+        transfer, turn = self._search("transfer", world, start, goals, joints, rng)
+        return transfer, [part.turned(turns[turn]) for part in place]
+
+    def _search(
+        self,
+        name: str,
+        world: CollisionWorld,
+        q_start: Array,
+        q_goals: Array,
+        joints: MovingJoints,
+        rng: np.random.Generator,
+    ) -> tuple[Part, int]:
+        """A path to one of several goals, and which goal it is.
+
+        It keeps the clearance wanted, or less where its ends have less.
+        """
+        settings = self.problem.planner
+        for clearance in dict.fromkeys(settings.clearance * share for share in _SHARES):
+            keeping = world.keeping(clearance)
+            result = plan_path(keeping, q_start, q_goals, joints, settings, rng)
+            if result.path is not None and result.goal is not None:
+                carried = dict(world.attached)
+                return Part(name, keeping, result.path, carried), result.goal
+            if result.outcome not in _ENDS_IN_THE_WAY:
+                break
+        raise BlockedError(name, result.message)
+
+    def _timed(self, part: Part) -> Segment:
+        """The segment of a part, as fast as the robot's limits allow."""
+        limits = motion_limits(self.problem.robot)
+        resolution = self.problem.planner.resolution
+        result = time_path(part.world, part.path, limits, resolution)
+        if result.motion is None:
+            raise BlockedError(part.name, result.message)
+        motion = result.motion
+        return Segment(
+            part.name, motion.times, motion.positions, motion.velocities, part.attached
+        )
+
+    def _turns(self, parts: list[Part]) -> Array:
+        """Whole turns of the arm's joints (m, nq) that keep all parts within limits."""
+        arm = self.problem.robot.arm
+        q = np.concatenate([part.path for part in parts])[:, arm.indices]
+        others = windings(q[0], arm.lower, arm.upper) - q[0]
+        inside = [
+            bool(np.all((q + t >= arm.lower) & (q + t <= arm.upper))) for t in others
+        ]
+        turns = np.zeros((sum(inside), self.problem.robot.model.nq))
+        turns[:, arm.indices] = others[inside]
+        return turns
