@@ -38,7 +38,7 @@ class Scores(NamedTuple):
 
 
 def term_factors(problem: Problem) -> Array:
-    """What the raw value of each term is multiplied by, in the order of `TERMS`, (3,)."""
+    """What the raw values are multiplied by, (3,), in the order of `TERMS`."""
     settings, scales = problem.score, problem.robot.score_scales
     factors = [
         settings.grasp,

@@ -5,8 +5,8 @@ import pytest
 
 from mmplan.exceptions import InputError
 from mmplan.planning import (
-    PathOutcome,
     PathChecker,
+    PathOutcome,
     available_planners,
     plan_path,
     transfer_joints,
