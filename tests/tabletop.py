@@ -24,3 +24,18 @@ def cup_problem(*more: Obstacle) -> Problem:
     return replace(
         problem, obstacles=(*problem.obstacles, *more), tasks=problem.tasks[:1]
     )
+
+
+def cup_scene(folder: Path, **settings: str) -> Path:
+    """The cup's task alone as a scene file in `folder`, with more sections if wanted.
+
+    `settings` replace the sections of those names.
+    """
+    lines = SCENE.read_text().splitlines()
+    kept = [line for line in lines if "move: bottle" not in line]
+    for name, text in settings.items():
+        kept = [line for line in kept if not line.startswith(f"{name}:")]
+        kept.append(f"{name}: {text}")
+    path = folder / "cup.yaml"
+    path.write_text("\n".join(kept) + "\n")
+    return path
