@@ -23,9 +23,10 @@ Progress: TypeAlias = Callable[[int], None]
 class Optimization:
     """What a search found and what it cost.
 
-    `history` (h, 2) has the evaluations spent and the best sum of two scores so far
-    after each batch. `outcomes` (2, outcomes) counts the evaluations at start and goal
-    by `Outcome`. `evaluated` keeps every query, for the account of a failure.
+    `history` (h, 2) has the evaluations spent and the best sum of two scores so far,
+    wherever it rises and at the end. `outcomes` (2, outcomes) counts the evaluations
+    at start and goal by `Outcome`. `evaluated` keeps every query, for the account of a
+    failure.
     """
 
     candidates: tuple[Triple, ...]
@@ -63,13 +64,15 @@ def optimize(
     spent = 0
     while spent < evaluations:
         queries = optimizer.ask(evaluations - spent)
-        totals = _evaluate(score, queries, archive, outcomes)
+        totals = _evaluate(score, queries, outcomes)
+        history += _rises(archive, queries, totals, spent)
         optimizer.tell(totals)
         spent += len(totals)
         asked.append(queries)
-        history.append((spent, archive.best))
         if progress is not None:
             progress(spent)
+    if not history or history[-1][0] < spent:
+        history.append((spent, archive.best))
     return Optimization(
         candidates=tuple(optimizer.candidates(archive, candidates)),
         evaluations=spent,
@@ -82,12 +85,9 @@ def optimize(
 
 
 def _evaluate(
-    score: ScoreFunction,
-    queries: Queries,
-    archive: Archive,
-    outcomes: npt.NDArray[np.int64],
+    score: ScoreFunction, queries: Queries, outcomes: npt.NDArray[np.int64]
 ) -> Array:
-    """The scores (n,) of what was asked for, entered into archive and counts."""
+    """The scores (n,) of what was asked for, counted by outcome."""
     totals = np.zeros(len(queries.end))
     for end in End:
         rows = np.flatnonzero(queries.end == end)
@@ -96,9 +96,23 @@ def _evaluate(
         scores = score(end, queries.q_base[rows], queries.grasps[rows])
         totals[rows] = scores.total
         np.add.at(outcomes[end], scores.outcome, 1)
-        for row in rows[scores.total > 0.0]:
-            archive.add(end, queries.q_base[row], queries.grasps[row], totals[row])
     return totals
+
+
+def _rises(
+    archive: Archive, queries: Queries, totals: Array, spent: int
+) -> list[tuple[int, float]]:
+    """Enter scores into the archive in their order; where its best rises, and to what.
+
+    `spent` are the evaluations before these.
+    """
+    rises: list[tuple[int, float]] = []
+    for row in np.flatnonzero(totals > 0.0):
+        best, end = archive.best, End(int(queries.end[row]))
+        archive.add(end, queries.q_base[row], queries.grasps[row], totals[row])
+        if archive.best > best:
+            rises.append((spent + int(row) + 1, archive.best))
+    return rises
 
 
 def _placements(score: ScoreFunction, end: End) -> BasePlacements:

@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from mmplan.optimizers import OPTIMIZERS, Triple
+from mmplan.optimizers import OPTIMIZERS, Archive, Triple
 from mmplan.optimizers import optimize as run
 from mmplan.problem import OptimizerSettings
 from mmplan.scoring import End, Outcome
@@ -43,6 +43,21 @@ def test_the_history_never_falls_and_ends_at_the_best(name: str) -> None:
     assert np.all(np.diff(best) >= 0.0)
     assert best[-1] == pytest.approx(best_sum(score), abs=1e-12)
     assert best[-1] >= found.candidates[0].total > 0.0
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_history_is_that_of_evaluations_one_by_one(name: str) -> None:
+    found, score = optimize(name, 1500)
+    totals, best = score.pairs(), Archive()
+    rises = []
+    for end, q_base, grasp in zip(*found.evaluated, strict=True):
+        before = best.best
+        total = totals[End(end), q_base.tobytes(), grasp.tobytes()]
+        if total > 0.0:
+            best.add(End(end), q_base, grasp, total)
+        rises.append(best.best > before)
+    spent = np.flatnonzero(rises) + 1
+    assert found.history[:, 0].tolist() == np.union1d(spent, [1500]).tolist()
 
 
 def best_sum(score: AnalyticScore) -> float:
@@ -141,7 +156,8 @@ def test_progress_is_told_after_every_batch() -> None:
         SPACE, OptimizerSettings(), np.random.default_rng(0)
     )
     found = run(AnalyticScore(), optimizer, 3000, 1, told.append)  # type: ignore[arg-type]
-    assert told == found.history[:, 0].tolist()
+    assert told == [588, 1176, 1624, 2072, 2660, 3000]
+    assert found.evaluations == told[-1]
 
 
 def test_co_evolution_beats_random_sampling() -> None:
