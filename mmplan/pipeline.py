@@ -79,15 +79,11 @@ def _solve_task(
     raise NoPlanError("\n".join(account.lines()), account)
 
 
-def score_function(
-    problem: Problem, world: CollisionWorld | None = None
-) -> ScoreFunction:
+def score_function(problem: Problem) -> ScoreFunction:
     """The score of a problem's first task, in its world before that task."""
     task = problem.tasks[0]
     _, family = grasp_family(problem.object(task.object))
-    return ScoreFunction(
-        problem, task, world or CollisionWorld.of_problem(problem), family
-    )
+    return ScoreFunction(problem, task, CollisionWorld.of_problem(problem), family)
 
 
 def plan_candidates(
