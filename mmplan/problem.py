@@ -93,7 +93,7 @@ class PlannerSettings:
     (how many distinct goals of the optimizer are tried), so that one seed gives one
     plan; `time_limit` (s, for one path) is the safety net. `resolution` (m) is the
     longest way that any point of the robot moves between two collision checks.
-    Paths keep `clearance` (m) from all things where their ends and the room allow it.
+    Paths keep `clearance` (m) from all that their ends are not nearer to already.
     `shortcuts` is the number of attempts at shortening a path.
     """
 

@@ -34,6 +34,13 @@ class TouchRules(NamedTuple):
     supports: Mapping[tuple[str, str], float] = {}
 
 
+class Clearance(NamedTuple):
+    """The distance to keep (m), but not between the pairs of owners in `spared`."""
+
+    distance: float = 0.0
+    spared: frozenset[frozenset[str]] = frozenset()
+
+
 class Assembly(NamedTuple):
     """The geometry model with what is known of its bodies and pairs."""
 
@@ -49,13 +56,13 @@ def assemble(
     standing: Mapping[str, Array],
     attached: Mapping[str, Array],
     touch: TouchRules,
-    pair_filter: Callable[[Body, Body], bool] | None = None,
-    clearance: float = 0.0,
+    pair_filter: Callable[[Body, Body], bool] | None,
+    clearance: Clearance,
 ) -> Assembly:
     """Put the world together; see `CollisionWorld` for which pairs are checked.
 
     Where there is a `pair_filter`, only the pairs that it accepts are. Pairs with the
-    scene and with what is carried count as touching from `clearance` (m) on.
+    scene and with what is carried must keep the `clearance`.
     """
     geometry = robot.geometry.clone()
     bodies = [
@@ -125,11 +132,15 @@ def _may_touch(mover: Body, scene: Body, touch: TouchRules) -> bool:
     return mover.kind == "finger" and scene.owner in touch.fingers
 
 
-def _allowed_depth(a: Body, b: Body, touch: TouchRules, clearance: float) -> float:
+def _allowed_depth(a: Body, b: Body, touch: TouchRules, clearance: Clearance) -> float:
+    for pair in ((a.owner, b.owner), (b.owner, a.owner)):
+        if pair in touch.supports:
+            return touch.supports[pair]
     robot = ("base", "arm", "finger")
-    needed = 0.0 if a.kind in robot and b.kind in robot else -clearance
-    depths = touch.supports
-    return depths.get((a.owner, b.owner), depths.get((b.owner, a.owner), needed))
+    own = a.kind in robot and b.kind in robot
+    if own or frozenset((a.owner, b.owner)) in clearance.spared:
+        return 0.0
+    return -clearance.distance
 
 
 def _set_pairs(geometry: pin.GeometryModel, pairs: list[tuple[int, int]]) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from mmplan.collision.assembly import Assembly, Body, TouchRules, assemble
+from mmplan.collision.assembly import Assembly, Body, Clearance, TouchRules, assemble
 from mmplan.collision.checker import Checker
 from mmplan.collision.scenery import Scenery
 from mmplan.problem import Problem
@@ -50,7 +50,7 @@ class CollisionWorld:
     attached: Mapping[str, Array] = field(default_factory=dict)  # -> T_tool_object
     touch: TouchRules = field(default_factory=TouchRules)
     pair_filter: Callable[[Body, Body], bool] | None = None
-    clearance: float = 0.0
+    clearance: Clearance = field(default_factory=Clearance)
 
     @classmethod
     def of_problem(cls, problem: Problem) -> CollisionWorld:
@@ -109,12 +109,15 @@ class CollisionWorld:
         """The world in which only pairs with a finger link are checked."""
         return replace(self, pair_filter=_with_a_finger)
 
-    def keeping(self, clearance: float) -> CollisionWorld:
+    def keeping(self, clearance: float, *ends: Array) -> CollisionWorld:
         """The world in which a distance (m) below `clearance` counts as collision.
 
-        Except for the robot's links among themselves and for permitted touches.
+        Except for the robot's links among themselves, for permitted touches, and for
+        what is nearer than that already at one of the configurations `ends` (nq,).
         """
-        return replace(self, clearance=clearance)
+        world = replace(self, clearance=Clearance(clearance))
+        close = {frozenset(c[:2]) for q in ends for c in world.contacts(q)}
+        return replace(self, clearance=Clearance(clearance, frozenset(close)))
 
     @property
     def model(self) -> pin.Model:

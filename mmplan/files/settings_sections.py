@@ -103,7 +103,7 @@ class PlannerSection(Section):
     resolution: Annotated[Positive, AfterValidator(_fine)] = PlannerSettings.resolution
     """Longest way of any point of the robot between two collision checks, m."""
     clearance: Annotated[float, Field(ge=0, le=1)] = PlannerSettings.clearance
-    """Distance that paths keep from all things where ends and room allow it, m."""
+    """Distance that paths keep from all that their ends keep it from, m."""
     shortcuts: Annotated[int, Field(ge=0, le=10**6)] = PlannerSettings.shortcuts
     """Attempts at shortening a path."""
 

@@ -15,7 +15,6 @@ from mmplan.motion.short_motions import ShortMotions
 from mmplan.plan import Segment
 from mmplan.planning import (
     MovingJoints,
-    PathOutcome,
     motion_limits,
     plan_path,
     time_path,
@@ -24,10 +23,6 @@ from mmplan.planning import (
 )
 from mmplan.problem import Problem, Task
 from mmplan.shapes import Array
-
-# The shares of the clearance wanted that a path is tried with.
-_SHARES = (1.0, 0.25, 0.0)
-_ENDS_IN_THE_WAY = (PathOutcome.INVALID_START, PathOutcome.INVALID_GOAL)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,18 +99,14 @@ class TaskMotion:
     ) -> tuple[Part, int]:
         """A path to one of several goals, and which goal it is.
 
-        It keeps the clearance wanted, or less where its ends have less.
+        It keeps the clearance wanted from all that its ends keep it from.
         """
         settings = self.problem.planner
-        for clearance in dict.fromkeys(settings.clearance * share for share in _SHARES):
-            keeping = world.keeping(clearance)
-            result = plan_path(keeping, q_start, q_goals, joints, settings, rng)
-            if result.path is not None and result.goal is not None:
-                carried = dict(world.attached)
-                return Part(name, keeping, result.path, carried), result.goal
-            if result.outcome not in _ENDS_IN_THE_WAY:
-                break
-        raise BlockedError(name, result.message)
+        keeping = world.keeping(settings.clearance, q_start, *q_goals)
+        result = plan_path(keeping, q_start, q_goals, joints, settings, rng)
+        if result.path is None or result.goal is None:
+            raise BlockedError(name, result.message)
+        return Part(name, keeping, result.path, dict(world.attached)), result.goal
 
     def _timed(self, part: Part) -> Segment:
         """The segment of a part, as fast as the robot's limits allow."""
