@@ -126,7 +126,11 @@ def _fixture_configuration(model: pin.Model, fixture: Fixture) -> Array:
             raise InputError(
                 f"{fixture.path}: no joint '{name}'; joints of this fixture: {known}"
             )
-        q[model.joints[model.getJointId(name)].idx_q] = value
+        joint = model.joints[model.getJointId(name)]
+        # Pinocchio keeps a continuous joint as its cosine and sine.
+        q[joint.idx_q : joint.idx_q + joint.nq] = (
+            value if joint.nq == 1 else (np.cos(value), np.sin(value))
+        )
     return q
 
 
