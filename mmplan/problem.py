@@ -98,7 +98,7 @@ class PlannerSettings:
     """
 
     name: str = "RRTConnect"
-    iterations: int = 5_000
+    iterations: int = 3_000
     candidates: int = 10
     time_limit: float = 10.0
     resolution: float = 0.01
