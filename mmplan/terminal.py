@@ -84,7 +84,7 @@ def verification_table(plan: Plan, report: VerificationReport) -> str:
 
 
 def _ends(task: TaskPlan) -> Table:
-    table = Table("", "base", *task.start.scores, "score", box=SIMPLE_HEAD)
+    table = _table("", "base x, y", *task.start.scores, "score")
     for name, end in (("start", task.start), ("goal", task.goal)):
         base = ", ".join(f"{x:.3f}" for x in end.base)
         terms = [f"{value:.1f}" for value in end.scores.values()]
@@ -93,7 +93,14 @@ def _ends(task: TaskPlan) -> Table:
 
 
 def _segments(task: TaskPlan) -> Table:
-    table = Table("segment", "seconds", box=SIMPLE_HEAD)
-    for segment in task.segments:
-        table.add_row(segment.name, f"{segment.duration:.2f}")
+    table = _table("", *(segment.name for segment in task.segments))
+    table.add_row("seconds", *(f"{s.duration:.2f}" for s in task.segments))
+    return table
+
+
+def _table(first: str, *others: str) -> Table:
+    """A table of numbers with a name in the first column."""
+    table = Table(first, box=SIMPLE_HEAD, show_edge=False)
+    for header in others:
+        table.add_column(header, justify="right")
     return table
