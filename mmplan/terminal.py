@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
@@ -63,7 +62,13 @@ def plan_tables(plan: Plan, output: Path | None) -> list[Table | str]:
     """A plan in a few tables: choices, segments, proof."""
     parts: list[Table | str] = []
     for task in plan.tasks:
-        parts += [f"{task.object}, grasp '{task.grasp}'", _ends(task), _segments(task)]
+        parts += [
+            f"{task.object}, grasp '{task.grasp}'",
+            _ends(task),
+            "",
+            _segments(task),
+            "",
+        ]
     if plan.verification is not None:
         parts.append(verification_table(plan, plan.verification))
     if output is not None:
@@ -100,7 +105,7 @@ def _segments(task: TaskPlan) -> Table:
 
 def _table(first: str, *others: str) -> Table:
     """A table of numbers with a name in the first column."""
-    table = Table(first, box=SIMPLE_HEAD, show_edge=False)
+    table = Table(first, box=None, pad_edge=False, padding=(0, 2, 0, 0))
     for header in others:
         table.add_column(header, justify="right")
     return table
