@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -82,12 +83,16 @@ def test_collisions_named_are_those_that_happen(
         score(end, q_base[rows], grasps[rows]).outcome,
         [Outcome.BASE_COLLISION, Outcome.COLLISION, Outcome.HAND_OPEN_COLLISION],
     )
-    seen = set()
+    assert 10 < hit.sum() <= 300  # so few that all are looked at again
+    seen: Counter[tuple[str, str]] = Counter()
     for row in rows[hit]:
         contacts = score.contacts(end, q_base[row], grasps[row])
         assert contacts
-        seen |= {(c.first, c.second) for c in contacts}
-    assert {(a, b) for a, b, _ in report.ends[end].collisions} <= seen
+        seen.update({(c.first, c.second) for c in contacts})
+    for first, second, share in report.ends[end].collisions:
+        assert share == pytest.approx(seen[first, second] / hit.sum())
+    most = max(seen.values()) / hit.sum()
+    assert report.ends[end].collisions[0][2] == pytest.approx(most)
 
 
 def test_the_report_as_json(report: FailureReport) -> None:

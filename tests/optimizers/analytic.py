@@ -35,9 +35,14 @@ SPACE = SearchSpace(
 
 
 def totals(end: End, q_base: Array, grasps: Array) -> Array:
-    """Scores up to 100 at the best base and grasp, 0 far away from them."""
-    off = np.linalg.norm(q_base - BEST_BASE[end], axis=1)
-    turned = np.abs(np.mod(grasps[:, 1] - BEST_GRASP[1] + np.pi, 2 * np.pi) - np.pi)
+    """Scores up to 100 at the best base and grasp, 0 far away from them.
+
+    Which direction of the grasp is best depends on the base.
+    """
+    aside = q_base - BEST_BASE[end]
+    off = np.linalg.norm(aside, axis=1)
+    turn = grasps[:, 1] - BEST_GRASP[1] - 3.0 * aside[:, 0]
+    turned = np.abs(np.mod(turn + np.pi, 2 * np.pi) - np.pi)
     raised = np.abs(grasps[:, 0] - BEST_GRASP[0])
     total = 100.0 * np.exp(-2.0 * off - 0.5 * turned - 10.0 * raised)
     bad = (off > 0.7) | (turned > 2.0) | ~free(q_base)
