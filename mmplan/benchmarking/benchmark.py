@@ -77,7 +77,7 @@ def run_benchmark(
         require_planner(name)
     problems = _problems(scenes)
     jobs = [
-        _job(problem, budget, name, factory, planner, seed)
+        make_job(problem, budget, name, factory, planner, seed)
         for seed in range(first_seed, first_seed + runs)
         for problem in problems
         for budget, planner in product(
@@ -150,7 +150,7 @@ def _problems(scenes: Iterable[str | Path]) -> list[Problem]:
     return list(problems.values())
 
 
-def _job(
+def make_job(
     problem: Problem,
     budget: int,
     name: str,
@@ -158,6 +158,7 @@ def _job(
     planner: str,
     seed: int,
 ) -> Job:
+    """One run of an optimizer, and of a planner where there is one, on a problem."""
     return Job(
         scene=_scene(problem),
         problem=problem.name,
