@@ -8,7 +8,7 @@ from mmplan.collision import (
     TOUCH_TOLERANCE,
     CollisionWorld,
     Scenery,
-    clearances,
+    overlaps,
     solids_of_obstacle,
 )
 from mmplan.exceptions import InputError
@@ -73,12 +73,11 @@ def _object_faults(problem: Problem, world: CollisionWorld) -> Iterator[Fault]:
 def _overlaps(
     scenery: Scenery, name: str, standing: Mapping[str, Array], where: KeyPath
 ) -> Iterator[Fault]:
-    near = clearances(scenery, name, standing[name], -TOUCH_TOLERANCE, standing)
-    for owner, distance in sorted(near.items(), key=lambda item: item[1]):
-        if distance < -TOUCH_TOLERANCE:
-            depth, most = -distance * _MILLIMETRES, TOUCH_TOLERANCE * _MILLIMETRES
-            yield Fault(
-                where,
-                f"{name} is {depth:.1f} mm deep in {owner}; what it stands on it may "
-                f"overlap by at most {most:g} mm",
-            )
+    deep = overlaps(scenery, name, standing[name], TOUCH_TOLERANCE, standing)
+    for owner, overlap in sorted(deep.items(), key=lambda item: -item[1].depth):
+        depth, most = (_MILLIMETRES * length for length in overlap)
+        yield Fault(
+            where,
+            f"{name} is {depth:.1f} mm deep in {owner}; what it stands on it may "
+            f"overlap by at most {most:.3g} mm",
+        )

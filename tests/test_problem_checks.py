@@ -63,6 +63,14 @@ def test_a_thin_sheet_through_an_object_is_a_fault() -> None:
     assert fault.startswith("objects.cup.at: cup is 5.2 mm deep in sheet")
 
 
+def test_a_thin_support_may_be_overlapped_by_half_its_thickness() -> None:
+    sheet = Obstacle("sheet", Box((1, 1, 0.0005)), shift(2.0, 0, 0.5))
+    check_geometry(problem_of(sheet, cup(0.0001)), NO_FILE)
+    (fault,) = messages(problem_of(sheet, cup(-0.0001)))
+    assert fault.startswith("objects.cup.at: cup is 0.3 mm deep in sheet; ")
+    assert fault.endswith(" by at most 0.25 mm")
+
+
 def test_a_goal_in_a_wall() -> None:
     wall = Obstacle("wall", Box((1.0, 0.1, 2.0)), shift(2.0, 0.4, 1.0))
     tasks = (Task("cup", on_table(0.0, 0.2)), Task("cup", on_table(0.0, 0.33)))

@@ -7,7 +7,7 @@ from mmplan.collision.distances import LinkDistances
 from mmplan.collision.requests import make_exact
 from mmplan.collision.scenery import Scenery
 from mmplan.collision.solids import solids_of_obstacle
-from mmplan.collision.supports import clearances, supports
+from mmplan.collision.supports import clearances, overlaps, supports
 from mmplan.collision.world import (
     CONTACT_ZONE,
     TOUCH_TOLERANCE,
@@ -32,6 +32,7 @@ __all__ = [
     "local_bounds",
     "make_exact",
     "moved_bounds",
+    "overlaps",
     "solids_of_obstacle",
     "supports",
 ]

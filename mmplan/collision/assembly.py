@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
+from mmplan.collision.bounds import local_bounds, touching_depth
 from mmplan.collision.scenery import Scenery
 from mmplan.collision.solids import Solid
 from mmplan.robot import Robot
@@ -27,7 +28,8 @@ class TouchRules(NamedTuple):
     """Who may touch whom.
 
     `fingers` are the objects that the finger links may touch; `supports` maps
-    (object, obstacle) to the depth (m) down to which the one may press into the other.
+    (object, obstacle) to the depth (m) down to which the one may press into the other,
+    which thin bodies may not use in full, see `touching_depth`.
     """
 
     fingers: frozenset[str] = frozenset()
@@ -88,7 +90,9 @@ def assemble(
         geometry,
         tuple(bodies),
         np.array(pairs, dtype=np.int64).reshape(-1, 2),
-        np.array(depth),
+        np.array(
+            [_limited(geometry, *p, d) for p, d in zip(pairs, depth, strict=True)]
+        ),
     )
 
 
@@ -141,6 +145,14 @@ def _allowed_depth(a: Body, b: Body, touch: TouchRules, clearance: Clearance) ->
     if own or frozenset((a.owner, b.owner)) in clearance.spared:
         return 0.0
     return -clearance.distance
+
+
+def _limited(geometry: pin.GeometryModel, i: int, j: int, depth: float) -> float:
+    """What of a depth thin bodies may use; less than none stays as it is."""
+    if depth <= 0.0:
+        return depth
+    first, second = (local_bounds(geometry.geometryObjects[k].geometry) for k in (i, j))
+    return touching_depth(first, second, depth)
 
 
 def _set_pairs(geometry: pin.GeometryModel, pairs: list[tuple[int, int]]) -> None:

@@ -33,6 +33,16 @@ def local_bounds(geometry: coal.CollisionGeometry) -> Bounds:
     return Bounds((low + high) / 2, (high - low) / 2)
 
 
+def touching_depth(first: Bounds, second: Bounds, tolerance: float) -> float:
+    """How deep (m) two bodies that may touch may overlap.
+
+    That is `tolerance`, but no more than half the thickness of the thinner one, lest
+    the tolerance lets thin bodies pass through each other. Bounds are in the bodies'
+    own frames.
+    """
+    return min(tolerance, float(first.half.min()), float(second.half.min()))
+
+
 def moved_bounds(local: Bounds, T: Array) -> Bounds:
     """Bounds in the world of boxes `local` (m, 3) moved by poses T (..., m, 4, 4)."""
     R = T[..., :3, :3]

@@ -4,16 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 
-from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
+from mmplan.collision.bounds import (
+    Bounds,
+    local_bounds,
+    moved_bounds,
+    touching_depth,
+)
 from mmplan.collision.scenery import Scenery
 from mmplan.collision.separation import signed_distance, transform
 from mmplan.collision.solids import Solid
 from mmplan.shapes import Array
 
 _NOTHING: Mapping[str, Array] = MappingProxyType({})
+
+
+class Overlap(NamedTuple):
+    """How deep (m) two things overlap that rest in contact, and how deep they may."""
+
+    depth: float
+    allowed: float
 
 
 def clearances(
@@ -28,21 +41,30 @@ def clearances(
     Keys are the names of obstacles and of the objects `standing` at their poses;
     negative is the depth of overlap. `T_world_object` (4, 4) is where the object is.
     """
-    own = scenery.objects[name]
-    own_bounds = _world_bounds(own, T_world_object)
     near: dict[str, float] = {}
-    for other, T_world_owner in _others(scenery, name, standing):
-        bounds = _world_bounds((other,), T_world_owner)
-        for i in np.flatnonzero(own_bounds.gap(bounds) <= max(within, 0.0)):
-            distance = signed_distance(
-                own[i].geometry,
-                transform(T_world_object @ own[i].placement),
-                other.geometry,
-                transform(T_world_owner @ other.placement),
-            )
-            if distance <= within:
-                near[other.owner] = min(distance, near.get(other.owner, np.inf))
+    for _, other, distance in _near(scenery, name, T_world_object, within, standing):
+        near[other.owner] = min(distance, near.get(other.owner, np.inf))
     return near
+
+
+def overlaps(
+    scenery: Scenery,
+    name: str,
+    T_world_object: Array,
+    tolerance: float,
+    standing: Mapping[str, Array] = _NOTHING,
+) -> dict[str, Overlap]:
+    """What an object at rest overlaps deeper than touching allows, by name.
+
+    That is deeper than `tolerance` (m), or than thin bodies may, see `touching_depth`.
+    """
+    found: dict[str, Overlap] = {}
+    for own, other, distance in _near(scenery, name, T_world_object, 0.0, standing):
+        local = local_bounds(own.geometry), local_bounds(other.geometry)
+        overlap = Overlap(-distance, touching_depth(*local, tolerance))
+        if overlap.depth > overlap.allowed:
+            found[other.owner] = max(overlap, found.get(other.owner, overlap))
+    return found
 
 
 def supports(
@@ -54,11 +76,35 @@ def supports(
 ) -> dict[str, float]:
     """What an object at rest touches: name -> `tolerance`.
 
-    Touching is a distance or a depth of at most `tolerance` (m); the returned mapping
-    is what `CollisionWorld.permit_touch` takes.
+    Touching is a distance of at most `tolerance` (m) or an overlap that is none of
+    `overlaps`; the returned mapping is what `CollisionWorld.permit_touch` takes.
     """
     near = clearances(scenery, name, T_world_object, tolerance, standing)
-    return {owner: tolerance for owner, d in near.items() if d >= -tolerance}
+    deep = overlaps(scenery, name, T_world_object, tolerance, standing)
+    return {owner: tolerance for owner in near if owner not in deep}
+
+
+def _near(
+    scenery: Scenery,
+    name: str,
+    T_world_object: Array,
+    within: float,
+    standing: Mapping[str, Array],
+) -> Iterator[tuple[Solid, Solid, float]]:
+    """Solids of an object and of others that are that near, with their distances."""
+    solids = scenery.objects[name]
+    bounds = _world_bounds(solids, T_world_object)
+    for other, T_world_owner in _others(scenery, name, standing):
+        gaps = bounds.gap(_world_bounds((other,), T_world_owner))
+        for i in np.flatnonzero(gaps <= max(within, 0.0)):
+            distance = signed_distance(
+                solids[i].geometry,
+                transform(T_world_object @ solids[i].placement),
+                other.geometry,
+                transform(T_world_owner @ other.placement),
+            )
+            if distance <= within:
+                yield solids[i], other, distance
 
 
 def _others(

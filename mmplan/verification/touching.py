@@ -9,7 +9,8 @@ Everything must stay apart but for three exceptions:
    by at most `TOUCH_TOLERANCE`, while no corner of the boxes around it is farther than
    `CONTACT_ZONE` from where it was when it stood there. What it stands on are the
    obstacles and other objects whose distance or depth is at most `TOUCH_TOLERANCE`
-   then.
+   then. No depth is let pass beyond half the thickness of the thinner body, lest an
+   object is pushed through a sheet.
 3. The same for the goal of the task.
 
 The depth of overlap of two convex bodies changes no faster than their points move, as
@@ -45,6 +46,7 @@ class Zone:
     at_rest: Array  # (k, 3), the same corners in the world when the object rests
     lever: Array  # (nq,), how far joints carry the object
     pairs: Mask  # (pairs,): object and support
+    depth: Array  # (pairs,), m, how deep these may overlap
 
     def leeway(self, T_world_joint: Array) -> Array:
         """How much farther (m) the object may move and stay in the zone, (n,)."""
@@ -92,7 +94,7 @@ class TouchRule:
         allowed = self.depth[pair]
         for zone, leeway in zip(self.zones, leeways, strict=True):
             rests = zone.pairs[pair] & (leeway >= 0.0)[moment]
-            allowed = np.where(rests, TOUCH_TOLERANCE, allowed)
+            allowed = np.where(rests, zone.depth[pair], allowed)
         return allowed
 
 
@@ -101,6 +103,7 @@ def _zones(stage: Stage, bodies: Bodies) -> tuple[Zone, ...]:
     item, world = stage.task.object, bodies.world
     held, corners = bodies.belong_to([item]), bodies.corners(item)
     T_joint_object = world.robot.T_joint_tool @ stage.attached[item]
+    thinner = bodies.halves.min(axis=1)[world.pairs].min(axis=1)
     zones = []
     for T_world_object in (stage.T_world_start, stage.T_world_goal):
         below = supports(
@@ -114,6 +117,7 @@ def _zones(stage: Stage, bodies: Bodies) -> tuple[Zone, ...]:
                 at_rest=corners @ T_world_joint[:3, :3].T + T_world_joint[:3, 3],
                 lever=bodies.levers[held].max(axis=0),
                 pairs=_between(held, bodies.belong_to(below), world.pairs),
+                depth=np.minimum(TOUCH_TOLERANCE, thinner),
             )
         )
     return tuple(zones)

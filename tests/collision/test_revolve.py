@@ -120,7 +120,7 @@ def test_pieces_enclose_the_solid_and_stand_off_no_more_than_said(name: str) -> 
         assert_enclosed_closely(PROFILES[name], seed, n=150)
 
 
-@settings(max_examples=40)
+@settings(max_examples=25)
 @given(vessels(), st.integers(0, 1000))
 def test_pieces_of_any_vessel_enclose_it_closely(profile: Array, seed: int) -> None:
     assert_enclosed_closely(profile, seed)

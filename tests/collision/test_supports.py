@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mmplan.collision import TOUCH_TOLERANCE, Scenery, clearances, supports
+from mmplan.collision import TOUCH_TOLERANCE, Scenery, clearances, overlaps, supports
 from mmplan.problem import Object, Obstacle
 from mmplan.shapes import Array, Box, Cylinder, Revolve, Sphere
 from tests.collision.worlds import SCENES, problem_of, scene, shipped
@@ -85,12 +85,24 @@ def test_an_object_may_touch_several_things() -> None:
     assert set(found) == {"table", "wall", "jar"}
 
 
-@pytest.mark.parametrize("height", [0.001, 0.005, 0.05, 0.099])
+@pytest.mark.parametrize("height", [0.0001, 0.0005, 0.005, 0.05, 0.0999])
 def test_a_thin_sheet_through_an_object_is_no_support(height: float) -> None:
-    """Half a millimetre thin, but the way out of it is longer than the tolerance."""
+    """Half a millimetre thin; its middle is between the cup's bottom and its top."""
     sheet = Obstacle("sheet", Box((1, 1, 0.0005)), shift(0, 0, 0.5 + height))
-    found = supports(scenery(TABLE, sheet, CUP), "cup", on_table(0.0), TOUCH_TOLERANCE)
-    assert set(found) == {"table"}
+    place, T = scenery(TABLE, sheet, CUP), on_table(0.0)
+    assert set(supports(place, "cup", T, TOUCH_TOLERANCE)) == {"table"}
+    ((owner, overlap),) = overlaps(place, "cup", T, TOUCH_TOLERANCE).items()
+    assert owner == "sheet"
+    assert overlap.allowed == pytest.approx(0.00025)
+    expected = 0.00025 + min(height, 0.1 - height)
+    assert overlap.depth == pytest.approx(expected, abs=2e-6)
+
+
+def test_a_thin_sheet_supports_down_to_half_its_thickness() -> None:
+    for height, rests in ((-0.0001, True), (-0.0003, True), (0.0001, False)):
+        sheet = Obstacle("sheet", Box((1, 1, 0.0005)), shift(0, 0, 0.5 + height))
+        found = supports(scenery(sheet, CUP), "cup", on_table(0.0), TOUCH_TOLERANCE)
+        assert set(found) == ({"sheet"} if rests else set())
 
 
 @pytest.mark.parametrize("name", SCENES)

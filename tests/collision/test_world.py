@@ -270,6 +270,17 @@ def test_depth_is_the_way_out_however_thin_the_support(height: float) -> None:
     assert contact.depth == pytest.approx(0.05 + 0.00025 - abs(height), abs=1e-6)
 
 
+@pytest.mark.parametrize("height", np.linspace(-0.0002, 0.0002, 5))
+def test_thin_things_do_not_pass_through_each_other(height: float) -> None:
+    """A disc and a sheet that overlap by less than the tolerance, one in the other."""
+    sheet = Obstacle("sheet", Box((1, 1, 0.0005)), shift(3.0, 0.0, 0.5))
+    world = among(sheet, Object("disc", Cylinder(0.1, 0.0004), FAR))
+    for z, collides in ((0.5 + height, True), (0.5004, False)):
+        held = held_at(world, "disc", q_tucked(), shift(3.0, 0.0, z))
+        permitted = held.permit_touch("disc", supports={"sheet": TOUCH_TOLERANCE})
+        assert permitted.any_collision(q_tucked()[None]) == collides
+
+
 def test_contacts_name_the_deepest_overlap_first() -> None:
     world = among(
         Obstacle("near", Sphere(0.05), shift(0.3, 0.0, 0.2)),
