@@ -38,10 +38,8 @@ def contests(store: Store) -> list[Contest]:
     """The contests of a store: problems in the order in which they came, by budget."""
     best = store.best()
     problems = {p.name: p for p in store.problems()}
-    order = list(problems)
-    records = sorted(
-        store.records(), key=lambda r: (order.index(r.problem), r.evaluations)
-    )
+    order = {name: i for i, name in enumerate(problems)}
+    records = sorted(store.records(), key=lambda r: (order[r.problem], r.evaluations))
     return [
         Contest(problems[name], budget, best.get(name, 0.0), _by_label(runs))
         for (name, budget), runs in groupby(

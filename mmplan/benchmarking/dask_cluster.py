@@ -70,7 +70,7 @@ def _do(client: Client, jobs: Iterator[Job]) -> Iterator[Record]:
     from distributed import KilledWorker, as_completed
 
     session = uuid.uuid4().hex
-    futures = as_completed()
+    futures = as_completed(loop=client.loop)
     while True:
         while futures.count() < _AHEAD * max(1, sum(client.nthreads().values())):
             job = next(jobs, None)
