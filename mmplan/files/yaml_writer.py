@@ -7,6 +7,8 @@ from typing import TypeAlias, Union
 
 import yaml
 
+from mmplan.files.yaml_scalars import Scalar, parse_scalar
+
 Plain: TypeAlias = Union[
     str, int, float, bool, "Sequence[Plain]", "Mapping[str, Plain]"
 ]
@@ -31,12 +33,19 @@ def yaml_text(data: Mapping[str, Plain], comment: str = "") -> str:
 
 def _lay_out(node: yaml.Node, depth: int) -> None:
     """Choose the lines of a node and all below it; sections have an item a line."""
-    if not isinstance(node, yaml.CollectionNode):
-        return
-    node.flow_style = depth > 1 and depth * _INDENT + _width(node) <= _WIDTH
-    if not node.flow_style:
+    if isinstance(node, yaml.ScalarNode):
+        _quote(node)
+    if isinstance(node, yaml.CollectionNode):
+        node.flow_style = depth > 1 and depth * _INDENT + _width(node) <= _WIDTH
         for child in _children(node):
             _lay_out(child, depth + 1)
+
+
+def _quote(node: yaml.ScalarNode) -> None:
+    """Put text into quotes that would be read as something else."""
+    is_text = node.tag == "tag:yaml.org,2002:str"
+    if is_text and parse_scalar(node.value) != Scalar(node.value):
+        node.style = "'"
 
 
 def _width(node: yaml.Node) -> int:

@@ -5,7 +5,7 @@ from mmplan.generation.difficulty import Difficulty
 from mmplan.generation.draft import Draft
 from mmplan.generation.family import Family
 from mmplan.generation.folder import Written, write_scenes
-from mmplan.generation.generate import (
+from mmplan.generation.generator import (
     FAMILIES,
     GeneratedScene,
     generate,

@@ -34,6 +34,15 @@ def has_candidate(problem: Problem) -> bool:
         return False
 
 
+def found_by(problem: Problem, name: str, evaluations: int, seed: int) -> bool:
+    """Whether one optimizer finds them within a budget of score evaluations.
+
+    Raises:
+        NoPlanError: There is no room for the base.
+    """
+    return _found(score_function(problem), name, evaluations, seed)
+
+
 def has_plan(problem: Problem) -> bool:
     """Whether `solve` finds a verified plan, with its defaults and seed 0."""
     if not has_candidate(problem):

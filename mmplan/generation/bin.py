@@ -24,16 +24,16 @@ def bin_to_bin(rng: np.random.Generator, difficulty: Difficulty) -> Draft | None
     """
     thing = draw_thing(rng, "can", "tube", "can", "tube", "bottle", "wineglass")
     stance = thing.stances[_rest(thing)]
-    deep = difficulty.between(0.08, 0.16)
+    deep = difficulty.between(0.08, 0.17)
     bins = [_Bin.draw(rng, side, difficulty, deep) for side in (-1, 1)]
     rng.shuffle(bins)
     places = [Occupied(b.surface) for b in bins]
-    gap = difficulty.between(0.06, 0.03)
+    gap = difficulty.between(0.06, 0.02)
     at, to = (place.place(rng, stance, gap) for place in places)
     if at is None or to is None:
         return None
-    count = difficulty.count(1, 8)
-    about = clutter(rng, places, count, gap, tallest=max(0.06, 0.8 * deep))
+    count = difficulty.count(1, 12)
+    about = clutter(rng, places, count, gap, tallest=deep, widest=0.07)
     walls = {name: box for b in bins for name, box in b.walls().items()}
     return Draft(
         description=f"A {thing.name}, {_rest(thing).value}, from one bin into another",
@@ -65,7 +65,7 @@ class _Bin:
         cls, rng: np.random.Generator, side: int, difficulty: Difficulty, deep: float
     ) -> _Bin:
         """A bin on the right (-1) or left (+1)."""
-        size = difficulty.between(0.46, 0.3) + float(rng.uniform(0.0, 0.1))
+        size = difficulty.between(0.46, 0.27) + float(rng.uniform(0.0, 0.1))
         half = round(size / 2, 3)
         y = side * (half + round(float(rng.uniform(0.05, 0.35)), 3))
         inside = Rect((_MIDDLE - half, _MIDDLE + half), (y - half, y + half))

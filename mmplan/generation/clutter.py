@@ -20,6 +20,7 @@ def clutter(
     count: int,
     gap: float,
     tallest: float = 0.26,
+    widest: float = 0.11,
 ) -> dict[str, Entry]:
     """At most `count` obstacles on surfaces that have room, by name.
 
@@ -30,7 +31,8 @@ def clutter(
     for number in range(count):
         place = places[int(rng.integers(len(places)))]
         height = _height(rng, place, tallest)
-        entry = _draw(rng, place, height, gap, near=number % 2 == 0)
+        sides = tuple(round(float(v), 3) for v in rng.uniform(0.04, widest, 2))
+        entry = _draw(rng, place, (*sides, height), gap, near=number % 2 == 0)
         if entry is not None:
             found[f"clutter_{len(found) + 1}"] = entry
     return found
@@ -42,10 +44,15 @@ def _height(rng: np.random.Generator, place: Occupied, tallest: float) -> float:
 
 
 def _draw(
-    rng: np.random.Generator, place: Occupied, height: float, gap: float, *, near: bool
+    rng: np.random.Generator,
+    place: Occupied,
+    size: tuple[float, ...],
+    gap: float,
+    *,
+    near: bool,
 ) -> Entry | None:
-    """A cylinder or a box at a free spot."""
-    sides = [round(float(v), 3) for v in rng.uniform(0.04, 0.11, 2)]
+    """A box of that size (x, y, z) or a cylinder as wide as x, at a free spot."""
+    *sides, height = size
     yaw = math.radians(int(rng.integers(-90, 90)))
     is_round = bool(rng.random() < 0.5)
     radius = sides[0] / 2 if is_round else math.hypot(*sides) / 2

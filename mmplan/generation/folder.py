@@ -13,7 +13,7 @@ from mmplan.exceptions import InputError
 from mmplan.files.suggestions import listed
 from mmplan.generation.acceptance import Acceptance, has_candidate
 from mmplan.generation.difficulty import Difficulty
-from mmplan.generation.generate import generate, scene_name
+from mmplan.generation.generator import generate, scene_name
 
 # Called with the scenes that are written so far and with all that there are to be.
 Progress: TypeAlias = Callable[[int, int], None]
@@ -28,8 +28,9 @@ class Written:
 
     def __str__(self) -> str:
         """One line for people."""
-        tried = len(self.paths) + self.rejected
-        return f"{len(self.paths)} scenes of {tried} drawn; {self.rejected} rejected"
+        kept = len(self.paths)
+        drawn = kept + self.rejected
+        return f"{kept} of {drawn} scenes drawn were kept, {self.rejected} rejected"
 
 
 def write_scenes(
