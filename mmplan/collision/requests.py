@@ -9,8 +9,9 @@ import pinocchio as pin
 
 from mmplan.shapes import Array
 
-# Distances are exact to this, m.
-GJK_TOLERANCE = 1e-6
+# Where coal stops to improve distances, m: those of round bodies may come out about
+# twice as much too large. For scores, and for proofs.
+SCORE_TOLERANCE, PROOF_TOLERANCE = 1e-6, 1e-9
 
 
 def make_exact(data: pin.GeometryData, allowed_depth: Array | None = None) -> None:
@@ -18,7 +19,7 @@ def make_exact(data: pin.GeometryData, allowed_depth: Array | None = None) -> No
 
     Pairs may overlap by `allowed_depth` (m), (pairs,).
     """
-    plain, distance = collision_request(0.0), distance_request()
+    plain, distance = collision_request(0.0), distance_request(SCORE_TOLERANCE)
     collisions, distances = data.collisionRequests, data.distanceRequests
     for pair in range(len(collisions)):
         depth = 0.0 if allowed_depth is None else float(allowed_depth[pair])
@@ -34,11 +35,11 @@ def collision_request(allowed_depth: float) -> coal.CollisionRequest:
     return request
 
 
-def distance_request() -> coal.DistanceRequest:
-    """An exact request for single pairs."""
+def distance_request(tolerance: float) -> coal.DistanceRequest:
+    """A request for distances that coal improves until `tolerance` (m)."""
     request = coal.DistanceRequest()
     _forget(request)
-    request.gjk_tolerance = GJK_TOLERANCE
+    request.gjk_tolerance = tolerance
     return request
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import coal
 import pinocchio as pin
 
-from mmplan.collision.requests import distance_request
+from mmplan.collision.requests import PROOF_TOLERANCE, distance_request
 from mmplan.shapes import Array
 
 
@@ -44,4 +44,4 @@ class Separation:
         return signed_distance(self._shapes[i], T_world_i, self._shapes[j], T_world_j)
 
 
-_REQUEST = distance_request()
+_REQUEST = distance_request(PROOF_TOLERANCE)
