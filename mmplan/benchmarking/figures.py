@@ -18,6 +18,8 @@ from mmplan.benchmarking.statistics import best_so_far
 from mmplan.benchmarking.tables import mean_seconds, stages_of
 
 _SIZE = (5.2, 3.9)  # of one panel, inches
+_WIDTH_EACH = 1.2  # of a panel for each contender, at least
+_PLANS_A_ROW = 3
 _MARGIN = 0.4  # around what a floor plan must show, m
 # What hangs higher than this does not stand in the base's way, m.
 _OVERHEAD = 1.0
@@ -42,8 +44,9 @@ def _panels(
     share_y: bool = False,
 ) -> Figure:
     """One panel for each budget."""
-    n = len(contests)
-    figure = Figure(figsize=(_SIZE[0] * n, _SIZE[1]), layout="constrained")
+    n, (width, height) = len(contests), _SIZE
+    width = max(width, _WIDTH_EACH * max(len(c.contenders) for c in contests))
+    figure = Figure(figsize=(width * n, height), layout="constrained")
     axes = figure.subplots(1, n, squeeze=False, sharey=share_y)[0]
     for panel, contest in zip(axes, contests, strict=True):
         draw(panel, contest)
@@ -115,12 +118,16 @@ def _times(panel: Axes, contest: Contest) -> None:
 def _bases(contest: Contest) -> Figure:
     """One floor plan for each contender, with the bases of all successful runs."""
     n = len(contest.contenders)
+    columns = min(n, _PLANS_A_ROW)
+    rows = -(-n // columns)
     low, high = _view(contest)
     width, height = high - low
-    size = (4.6 * n, 0.9 + 4.6 * height / width)
+    size = (4.6 * columns, rows * (0.9 + 4.6 * height / width))
     figure = Figure(figsize=size, layout="constrained")
-    axes = figure.subplots(1, n, squeeze=False, sharey=True)[0]
-    for panel, (label, runs) in zip(axes, contest.contenders.items(), strict=True):
+    axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).flat
+    for panel in axes[n:]:
+        panel.remove()
+    for panel, (label, runs) in zip(axes, contest.contenders.items(), strict=False):
         _floor(panel, contest.problem.floor_plan)
         _scatter_bases(panel, runs)
         panel.set_title(f"{label}, {contest.evaluations} evaluations", fontsize=10)

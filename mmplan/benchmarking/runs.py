@@ -107,7 +107,7 @@ def _problem(job: Job) -> Problem:
     return problem
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=128)
 def _load(scene: str, fingerprint: str) -> Problem:  # noqa: ARG001 (loads anew)
     return load_problem(scene)
 

@@ -115,6 +115,7 @@ def test_the_papers_table_stands_beside_ours(folder: Path) -> None:
     assert table.rows[0][2:5] == ("99.0 %", "91.74", "3.77")
     assert table.rows[1][2:5] == ("99.0 %", "72.57", "6.13")
     assert "scenes and models are not published" in table.note
+    assert "not comparable" in table.note
 
 
 def test_the_paper_is_quoted_rightly() -> None:
