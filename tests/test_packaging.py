@@ -59,6 +59,13 @@ def test_error_in_scene_file_imports_nothing_heavy(
     assert not modules & HEAVY
 
 
+def test_error_in_arguments_of_generate_imports_nothing_heavy(tmp_path: Path) -> None:
+    arguments = ("generate", "--family", "shelv", "-o", "out")
+    code, modules = imported_by_command(*arguments, cwd=tmp_path)
+    assert code == 2
+    assert not modules & HEAVY
+
+
 def test_importing_the_package_imports_nothing_heavy() -> None:
     program = "import mmplan, sys; print(*sys.modules)"
     run = subprocess.run(

@@ -11,7 +11,9 @@ from mmplan.generation.things import Rest, Thing
 
 _TRAY = 0.015  # height of the tray, m
 _ROWS = 5
-_TINE_RADIUS, _TINE_LENGTH = 0.003, 0.08
+_TINE_RADIUS = 0.003
+# The fingers must reach a glass that stands on its rim above the tines.
+_TINE_LENGTH, _TINE_LENGTH_FOR_GLASSES = 0.08, 0.045
 _STEP = 0.07  # between the tines of a row, m
 DEEP, WIDE = 0.32, 0.46  # m, along x and y
 
@@ -20,13 +22,15 @@ DEEP, WIDE = 0.32, 0.46  # m, along x and y
 class Rack:
     """A dish rack for one kind of thing, at the place (x, y) of its middle.
 
-    `pitch` is the distance between its rows of tines, which lie along x (m).
+    `pitch` is the distance between its rows of tines, which lie along x, and `tine`
+    their length (m).
     """
 
     x: float
     y: float
     z: float  # of what it stands on, m
     pitch: float
+    tine: float
 
     @classmethod
     def for_thing(
@@ -36,7 +40,8 @@ class Rack:
         profile = thing.item["revolve"]
         deep = max(p[1] for p in profile) if thing.is_flat else 2 * _widest(thing)
         pitch = metres(round(deep + 2 * _TINE_RADIUS + spare, 3))
-        return cls(x, y, z, min(pitch, round(WIDE / (_ROWS - 1) - 0.002, 3)))
+        tine = _TINE_LENGTH if thing.is_flat else _TINE_LENGTH_FOR_GLASSES
+        return cls(x, y, z, min(pitch, round(WIDE / (_ROWS - 1) - 0.002, 3)), tine)
 
     def place(self, rng: np.random.Generator, thing: Thing) -> Entry:
         """The pose of a thing between two rows: plates on edge, glasses upside down."""
@@ -71,9 +76,9 @@ class Rack:
             y = self.y + (row - (_ROWS - 1) / 2) * self.pitch
             for column in range(columns):
                 x = self.x + (column - (columns - 1) / 2) * _STEP
-                middle = self._floor + _TINE_LENGTH / 2
+                middle = self._floor + self.tine / 2
                 entries[f"rack_tine_{row + 1}_{column + 1}"] = {
-                    "capsule": {"radius": _TINE_RADIUS, "length": _TINE_LENGTH},
+                    "capsule": {"radius": _TINE_RADIUS, "length": self.tine},
                     "at": pose(x, y, middle),
                 }
         return entries

@@ -10,6 +10,7 @@ import pytest
 
 from mmplan.cli import main
 from mmplan.exceptions import NoPlanError
+from mmplan.generation import FAMILIES
 from mmplan.problem import Problem
 from mmplan.scene_file import load_problem
 
@@ -67,7 +68,7 @@ def test_planned_scenes_are_those_that_can_be_solved(
         if len(tried) == 1:
             raise NoPlanError("no")
 
-    monkeypatch.setattr("mmplan.generation.acceptance.solve", second_time)
+    monkeypatch.setattr("mmplan.pipeline.solve", second_time)
     assert main(arguments(tmp_path, "--count", "1", "--planned")) == 0
     assert "1 of 2 scenes drawn were kept, 1 rejected" in capsys.readouterr().out
     kept = load_problem(tmp_path / NAMES[0])
@@ -130,3 +131,10 @@ def test_a_folder_that_is_read_only_is_refused(
     tmp_path.chmod(0o500)
     assert main(arguments(tmp_path)) == 2
     assert "cannot be written to" in capsys.readouterr().err
+
+
+def test_the_help_names_all_families(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["generate", "--help"])
+    text = capsys.readouterr().out
+    assert all(family in text for family in FAMILIES)
