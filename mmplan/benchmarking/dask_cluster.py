@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import threading
 import uuid
 from collections.abc import Iterator
@@ -54,11 +55,11 @@ class DaskCluster:
             ) from None
         try:
             client = Client(self.address, timeout=_PATIENCE, set_as_default=False)
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, asyncio.TimeoutError) as error:
             raise InputError(f"no Dask scheduler at {self.address}: {error}") from None
         try:
             client.wait_for_workers(1, timeout=_PATIENCE)
-        except TimeoutError:
+        except asyncio.TimeoutError:
             client.close()
             raise InputError(
                 f"the Dask scheduler at {self.address} has no workers"

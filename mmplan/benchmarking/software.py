@@ -7,7 +7,7 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-_LIBRARIES = ("coal", "numpy", "ompl", "pin", "toppra")
+_LIBRARIES = ("coal", "numpy", "ompl", "pin", "scipy", "toppra")
 # What asks for runs and shows them, and has no part in what comes of them.
 _ASIDE = frozenset({"benchmarking", "cli.py", "commands", "schema.py", "terminal.py"})
 
