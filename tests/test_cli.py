@@ -20,6 +20,7 @@ import mmplan
 from mmplan import assets
 from mmplan.cli import main
 from mmplan.plan import Plan
+from mmplan.plan_file import plan_schema
 from mmplan.terminal import progress_display
 from tests.tabletop import cup_scene
 
@@ -424,9 +425,11 @@ def test_what_is_shipped_has_a_line_each(
     assert [[row["name"], row["description"]] for row in listed] == lines
 
 
-def test_the_schema_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_schemas_are_printed(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["schema"]) == 0
     assert json.loads(capsys.readouterr().out) == mmplan.scene_schema()
+    assert main(["schema", "plan"]) == 0
+    assert json.loads(capsys.readouterr().out) == plan_schema()
 
 
 def test_the_version_is_told() -> None:

@@ -19,8 +19,9 @@ def add(commands: Any) -> None:
         command = commands.add_parser(name, help=text, description=text)
         add_json(command)
         command.set_defaults(run=run)
-    text = "print the JSON schema of scene files"
+    text = "print the JSON schema of scene files, or of plan files"
     schema = commands.add_parser("schema", help=text, description=text)
+    schema.add_argument("of", nargs="?", choices=("scene", "plan"), default="scene")
     schema.set_defaults(run=_schema)
 
 
@@ -59,8 +60,9 @@ def _list(rows: list[tuple[str, str]], as_json: bool) -> int:
     return SOLVED
 
 
-def _schema(_options: argparse.Namespace) -> int:
+def _schema(options: argparse.Namespace) -> int:
+    from mmplan.plan_file import plan_schema
     from mmplan.schema import scene_schema
 
-    print_json(scene_schema())
+    print_json(plan_schema() if options.of == "plan" else scene_schema())
     return SOLVED
