@@ -14,7 +14,14 @@ Share = Annotated[float, Field(ge=0.0, le=1.0)]
 Weight = Annotated[float, Field(ge=0.0, le=1e6)]
 Count = Annotated[int, Field(ge=1, le=10**9)]
 
-OptimizerName = Literal["coevolution", "random"]
+OptimizerName = Literal[
+    "coevolution",
+    "random",
+    "blockwise",
+    "cmaes",
+    "differential_evolution",
+    "nevergrad",
+]
 PlannerName = Literal[
     "AORRTC",
     "BFMT",
@@ -59,7 +66,7 @@ class OptimizerSection(Section):
     """What chooses the grasp and both base placements."""
 
     name: OptimizerName = "coevolution"
-    """coevolution (of the paper) or random (its baseline)."""
+    """coevolution (of the paper), random (its baseline), blockwise, or a library's."""
     evaluations: Count = OptimizerSettings.evaluations
     """Budget: evaluations of the score."""
     bases: Annotated[int, Field(ge=4, le=10**6)] = OptimizerSettings.bases

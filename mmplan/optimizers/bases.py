@@ -47,6 +47,20 @@ class BasePlacements:
         y = self.centre[1] + distance * np.sin(angle) + dy
         return np.stack([x, y], axis=1)
 
+    def nearest(self, q_base: Array) -> Array:
+        """Base joints (n, 2) that genes can stand for, near those given.
+
+        The polar coordinates go as far as their bounds allow, the offsets do the rest.
+        """
+        away = q_base - np.array(self.centre)
+        distance = np.linalg.norm(away, axis=1)
+        genes = np.zeros((len(q_base), 4))
+        genes[:, 0] = np.clip(distance, self.inner, self.outer)
+        genes[:, 1] = np.arctan2(away[:, 1], away[:, 0])
+        offset = q_base - self.q_base(genes)
+        genes[:, 2:] = np.clip(offset, -OFFSET, OFFSET)
+        return self.q_base(genes)
+
     def sample(self, n: int, rng: np.random.Generator) -> Array:
         """Genes (n, 4) uniform over the annulus, offsets 0, base free of collision.
 
