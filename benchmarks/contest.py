@@ -17,7 +17,7 @@ import time
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import lru_cache
-from itertools import product
+from itertools import islice, product
 from multiprocessing import get_context
 from typing import NamedTuple
 
@@ -55,15 +55,15 @@ def main() -> None:
     runs = [Run(*r) for r in product(options.scenes, budgets, names, seeds)]
     context = get_context("spawn")
     with ProcessPoolExecutor(options.jobs, mp_context=context) as pool:
-        results = dict(zip(runs, pool.map(_search, runs), strict=True))
-    for scene, budget in product(options.scenes, budgets):
-        print(f"\n{scene}, {budget} evaluations, {len(seeds)} seeds")
-        found = {
-            name: {seed: results[Run(scene, budget, name, seed)] for seed in seeds}
-            for name in names
-        }
-        _print_scores(found)
-        _print_differences(found)
+        results = zip(runs, pool.map(_search, runs), strict=True)
+        for scene, budget in product(options.scenes, budgets):
+            of_table = islice(results, len(names) * len(seeds))
+            found: dict[str, dict[int, Result]] = {name: {} for name in names}
+            for run, result in of_table:
+                found[run.optimizer][run.seed] = result
+            print(f"\n{scene}, {budget} evaluations, {len(seeds)} seeds")
+            _print_scores(found)
+            _print_differences(found)
 
 
 def _options() -> argparse.Namespace:
