@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from importlib.util import find_spec
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,16 @@ from mmplan.optimizers import optimize as run
 from mmplan.problem import OptimizerSettings
 from mmplan.scoring import End, Outcome, Scores
 from mmplan.shapes import Array
+
+LIBRARIES = {
+    "cmaes": "cma",
+    "differential_evolution": "pymoo",
+    "nevergrad": "nevergrad",
+}
+# Optimizers of libraries are tested where the extra `contenders` is installed.
+INSTALLED = [n for n in OPTIMIZERS if n not in LIBRARIES or find_spec(LIBRARIES[n])]
+# Nevergrad's takes milliseconds an evaluation, too long for thousands of them.
+QUICK = [n for n in INSTALLED if n != "nevergrad"]
 
 CENTRES = {End.START: (1.0, 0.0), End.GOAL: (0.0, 1.5)}
 INNER, OUTER = 0.28, 1.06

@@ -12,9 +12,19 @@ from mmplan.optimizers.joint import START_ONLY_VALUE, joint_values
 from mmplan.optimizers.unit_box import UnitBox
 from mmplan.problem import OptimizerSettings
 from mmplan.scoring import End
-from tests.optimizers.analytic import CENTRES, GRASPS, INNER, OUTER, SPACE, optimize
+from tests.optimizers.analytic import (
+    CENTRES,
+    GRASPS,
+    INNER,
+    INSTALLED,
+    LIBRARIES,
+    OUTER,
+    QUICK,
+    SPACE,
+    optimize,
+)
 
-CONTENDERS = ["cmaes", "differential_evolution", "nevergrad"]
+CONTENDERS = [name for name in INSTALLED if name in LIBRARIES]
 JOINT = ["random", *CONTENDERS]
 
 
@@ -66,7 +76,7 @@ def test_a_triple_is_worth_the_sum_of_its_scores_if_it_works_at_both_ends() -> N
     assert values.tolist() == [30.5, START_ONLY_VALUE, 0.0, 3e-3]
 
 
-@pytest.mark.parametrize("name", CONTENDERS)
+@pytest.mark.parametrize("name", [n for n in CONTENDERS if n in QUICK])
 def test_contenders_learn(name: str) -> None:
     """With what they are told they do far better than without."""
     best = {
@@ -76,7 +86,7 @@ def test_contenders_learn(name: str) -> None:
     assert best[name] > best["random"] + 10.0
 
 
-@pytest.mark.parametrize("name", CONTENDERS)
+@pytest.mark.parametrize("name", LIBRARIES)
 def test_a_missing_library_is_named_with_its_extra(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

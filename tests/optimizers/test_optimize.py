@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 import pytest
@@ -15,22 +15,29 @@ from mmplan.scoring import End, Outcome
 from tests.optimizers.analytic import (
     CENTRES,
     GRASPS,
+    INSTALLED,
     OUTER,
+    QUICK,
     SPACE,
     AnalyticScore,
     free,
     optimize,
 )
 
-NAMES = sorted(OPTIMIZERS)
+NAMES = sorted(QUICK)
 PAPERS_BUDGET = 6940
 ENOUGH = 2500  # evaluations for every optimizer to find candidates
 
 searched = cache(optimize)  # for tests that only look at what was found
 
 
-@pytest.mark.parametrize("evaluations", [1, 7, 500, 588, 2072, PAPERS_BUDGET])
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    ("name", "evaluations"),
+    [
+        *product(NAMES, [1, 7, 500, 588, 2072, PAPERS_BUDGET]),
+        *product(set(INSTALLED) - set(QUICK), [1, 7, 500]),
+    ],
+)
 def test_the_budget_is_spent_exactly(name: str, evaluations: int) -> None:
     found, score = optimize(name, evaluations)
     assert found.evaluations == score.count == evaluations
