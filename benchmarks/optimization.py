@@ -3,7 +3,7 @@
     python benchmarks/optimization.py [--scene wineglass] [--seeds 10] [--sample 400]
 
 One seed after the other the optimizer spends the paper's 6,940 evaluations, timed as a
-whole on one core; then the reference (`reference.py`) evaluates an even sample of the
+whole on one core; then the reference (`_reference.py`) evaluates an even sample of the
 same queries, and scores are compared. Both are measured in turn, in the same run.
 """
 
@@ -13,7 +13,7 @@ import argparse
 import time
 
 import numpy as np
-from reference import ReferenceScore
+from _reference import ReferenceScore
 
 import mmplan
 from mmplan.collision import CollisionWorld
