@@ -16,7 +16,7 @@ from mmplan.motion import Blocked, TaskMotion
 from mmplan.optimizers import OPTIMIZERS, Optimization, optimize, search_space
 from mmplan.plan import Plan, Segment, TaskEnd, TaskPlan
 from mmplan.plan_assembly import assemble_plan
-from mmplan.problem import Object, Problem
+from mmplan.problem import Object, Problem, Task
 from mmplan.scoring import End, ScoreFunction
 from mmplan.shapes import Array
 from mmplan.verification import examine
@@ -95,14 +95,34 @@ def plan_candidates(
 ) -> tuple[Plan | None, tuple[Attempt, ...]]:
     """The verified plan of the best candidate that has one, and the failures before.
 
-    `seed` is what the plan says that it was made from.
+    `seed` is what the plan says that it was made from. If all fail, and some at a
+    straight motion that the scene does not insist on, such motions may be left out.
     """
+    attempts: list[Attempt] = []
+    for without_lines in (False, True):
+        motion = TaskMotion(
+            score.problem, score.task, score.worlds[End.START], without_lines
+        )
+        plan = _first_plan(score, motion, found, seed, rng, attempts, report or _ignore)
+        if plan is not None or not _lines_in_the_way(score.task, attempts):
+            break
+    return plan, tuple(attempts)
+
+
+def _first_plan(
+    score: ScoreFunction,
+    motion: TaskMotion,
+    found: Optimization,
+    seed: int,
+    rng: np.random.Generator,
+    attempts: list[Attempt],
+    report: Progress,
+) -> Plan | None:
+    """The first verified plan; what candidates before it fail at joins `attempts`."""
     problem, task = score.problem, score.task
     names, family = grasp_family(problem.object(task.object))
-    motion = TaskMotion(problem, task, score.worlds[End.START])
-    attempts: list[Attempt] = []
     for k, triple in enumerate(found.candidates):
-        (report or _ignore)("planning", k, len(found.candidates))
+        report("planning", k, len(found.candidates))
         candidate = Candidate.of_triple(triple, score)
         segments = motion.plan(candidate, rng)
         if isinstance(segments, Blocked):
@@ -114,10 +134,15 @@ def plan_candidates(
         )
         verification = examine(plan, problem)
         if verification.ok:
-            return replace(plan, verification=verification), tuple(attempts)
+            return replace(plan, verification=verification)
         fault = str(verification.faults[0])
         attempts.append(Attempt(triple.total, Blocked("verification", fault)))
-    return None, tuple(attempts)
+    return None
+
+
+def _lines_in_the_way(task: Task, attempts: list[Attempt]) -> bool:
+    """Whether a straight motion that the scene leaves open stopped a candidate."""
+    return any(getattr(task, a.blocked.segment, 0.0) is None for a in attempts)
 
 
 def _optimize(

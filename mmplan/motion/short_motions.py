@@ -26,11 +26,14 @@ class ShortMotions:
     """Approach, grasp and lift at the start; lower, release and retreat at the goal.
 
     Nothing is searched for: each motion is free of collision or the candidate fails.
+    Straight motions whose length the scene leaves open are shortened where there is no
+    room for them and, with `without_lines`, left out where there is none at all.
     """
 
     problem: Problem
     task: Task
     world: CollisionWorld  # the object at its start
+    without_lines: bool = False
 
     def pick(self, candidate: Candidate, carrying: CollisionWorld) -> list[Part]:
         """Approach, grasp and lift; `carrying` is the world with the object in hand.
@@ -86,7 +89,7 @@ class ShortMotions:
     ) -> Array:
         """A straight tool motion (n, nq) from q, as long as the task wants it."""
         wanted: float | None = getattr(self.task, name)
-        lengths = [DEFAULT_LENGTH * f for f in _FACTORS] if wanted is None else [wanted]
+        lengths = [wanted] if wanted is not None else self._open_lengths()
         resolution = self.problem.planner.resolution
         message = ""
         for length in lengths:
@@ -97,6 +100,10 @@ class ShortMotions:
                 return motion.path
             message = motion.message
         raise BlockedError(name, message)
+
+    def _open_lengths(self) -> list[float]:
+        lengths = [DEFAULT_LENGTH * factor for factor in _FACTORS]
+        return [*lengths, 0.0] if self.without_lines else lengths
 
     def _hand(self, name: str, world: CollisionWorld, q: Array, hand: Array) -> Array:
         motion = hand_motion(world, q, hand, self.problem.planner.resolution)

@@ -32,6 +32,7 @@ class TaskMotion:
     problem: Problem
     task: Task
     world: CollisionWorld  # the object at its start
+    without_lines: bool = False  # whether straight motions may be left out
 
     def plan(
         self, candidate: Candidate, rng: np.random.Generator
@@ -45,7 +46,7 @@ class TaskMotion:
 
     @cached_property
     def _short(self) -> ShortMotions:
-        return ShortMotions(self.problem, self.task, self.world)
+        return ShortMotions(self.problem, self.task, self.world, self.without_lines)
 
     def _parts(self, candidate: Candidate, rng: np.random.Generator) -> list[Part]:
         """All segments in order, planned the short ones first, as they fail soonest."""
