@@ -144,7 +144,8 @@ def _taken(bounds: Bounds, which: Indices | Mask) -> Bounds:
 
 def _overlap(a: Bounds, b: Bounds) -> Mask:
     """Whether boxes overlap, broadcast over all but the last axis."""
-    overlap: Mask = np.all(np.abs(a.centre - b.centre) <= a.half + b.half, axis=-1)
+    within = np.abs(a.centre - b.centre) <= a.half + b.half
+    overlap: Mask = within[..., 0] & within[..., 1] & within[..., 2]
     return overlap
 
 
