@@ -45,7 +45,8 @@ class Task:
     The four lengths (m) are those of the straight tool motions: `approach` and
     `retreat` along the tool's z, `lift` and `lower` along the world's z. None leaves
     the length to the planner, which starts at its default, shortens where the scene is
-    too narrow, and leaves the motion out if nothing else helps; a number is kept to the letter, 0 leaves the motion out.
+    too narrow, and leaves the motion out if nothing else helps; a number is kept to the
+    letter, 0 leaves the motion out.
     """
 
     object: str

@@ -85,14 +85,16 @@ def assemble(
     if pair_filter is not None:
         pairs = [(i, j) for i, j in pairs if pair_filter(bodies[i], bodies[j])]
     _set_pairs(geometry, pairs)
-    depth = [_allowed_depth(bodies[i], bodies[j], touch, clearance) for i, j in pairs]
+    depths = {
+        (a, b): _allowed_depth(a, b, touch, clearance)
+        for a, b in {(bodies[i], bodies[j]) for i, j in pairs}
+    }
+    depth = [_limited(geometry, i, j, depths[bodies[i], bodies[j]]) for i, j in pairs]
     return Assembly(
         geometry,
         tuple(bodies),
         np.array(pairs, dtype=np.int64).reshape(-1, 2),
-        np.array(
-            [_limited(geometry, *p, d) for p, d in zip(pairs, depth, strict=True)]
-        ),
+        np.array(depth),
     )
 
 

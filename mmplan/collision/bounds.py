@@ -18,13 +18,13 @@ class Bounds(NamedTuple):
 
     def gap(self, other: Bounds) -> Array:
         """A lower bound on the distance between what the boxes enclose, broadcast."""
-        squares = 0.0
+        squares: Array | float = 0.0
         for axis in range(3):
             apart = np.abs(self.centre[..., axis] - other.centre[..., axis])
             apart -= self.half[..., axis] + other.half[..., axis]
             np.maximum(apart, 0.0, out=apart)
             squares = squares + apart * apart
-        gap: Array = np.sqrt(squares)
+        gap: Array = np.sqrt(np.asarray(squares))
         return gap
 
 

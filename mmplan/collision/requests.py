@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 
 import coal
+import numpy as np
 import pinocchio as pin
 
 from mmplan.shapes import Array
@@ -19,11 +20,13 @@ def make_exact(data: pin.GeometryData, allowed_depth: Array | None = None) -> No
 
     Pairs may overlap by `allowed_depth` (m), (pairs,).
     """
-    plain, distance = collision_request(0.0), distance_request(SCORE_TOLERANCE)
     collisions, distances = data.collisionRequests, data.distanceRequests
-    for pair in range(len(collisions)):
-        depth = 0.0 if allowed_depth is None else float(allowed_depth[pair])
-        collisions[pair] = plain if depth == 0.0 else collision_request(depth)
+    if allowed_depth is None:
+        allowed_depth = np.zeros(len(collisions))
+    by_depth = {d: collision_request(d) for d in set(allowed_depth.tolist())}
+    distance = distance_request(SCORE_TOLERANCE)
+    for pair, depth in enumerate(allowed_depth.tolist()):
+        collisions[pair] = by_depth[depth]
         distances[pair] = distance
 
 

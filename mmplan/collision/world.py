@@ -117,6 +117,8 @@ class CollisionWorld:
         """
         world = replace(self, clearance=Clearance(clearance))
         close = {frozenset(c[:2]) for q in ends for c in world.contacts(q)}
+        if not close:
+            return world
         return replace(self, clearance=Clearance(clearance, frozenset(close)))
 
     @property
