@@ -26,10 +26,11 @@ def check_geometry(problem: Problem, document: Document) -> None:
         InputError: A shape cannot be made, the robot starts in collision, or an object
             stands in something at its start or at a goal.
     """
-    faults = list(_shape_faults(problem))
-    if not faults:
+    try:
         world = CollisionWorld.of_problem(problem)
-        faults = [*_start_faults(problem, world), *_object_faults(problem, world)]
+    except InputError:  # of the first shape only
+        raise document.error(_shape_faults(problem)) from None
+    faults = [*_start_faults(problem, world), *_object_faults(problem, world)]
     if faults:
         raise document.error(faults)
 
