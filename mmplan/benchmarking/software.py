@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import hashlib
+from contextlib import suppress
 from functools import cache
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 _LIBRARIES = ("coal", "numpy", "ompl", "pin", "scipy", "toppra")
+_OPTIONAL = ("cma", "nevergrad", "pymoo")  # what some optimizers are built on
 # What asks for runs and shows them, and has no part in what comes of them.
 _ASIDE = frozenset({"benchmarking", "cli.py", "commands", "schema.py", "terminal.py"})
 
@@ -18,8 +20,18 @@ def software() -> str:
 
     The hash of the code tells states of a checkout apart that go by one version.
     """
-    libraries = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
+    versions = {name: version(name) for name in _LIBRARIES} | _installed(_OPTIONAL)
+    libraries = ", ".join(f"{name} {number}" for name, number in versions.items())
     return f"mmplan {version('mmplan')} (code {_code()}), {libraries}"
+
+
+def _installed(names: tuple[str, ...]) -> dict[str, str]:
+    """The versions of those that are there."""
+    found = {}
+    for name in names:
+        with suppress(PackageNotFoundError):
+            found[name] = version(name)
+    return found
 
 
 def _code() -> str:
