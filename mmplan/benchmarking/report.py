@@ -20,7 +20,7 @@ from mmplan.exceptions import InputError
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from mmplan.benchmarking.tables import Table
+    from mmplan.benchmarking.table import Table
 
 PAGE, TABLES, FIGURES, LOGS = "report.html", "tables.md", "figures", "ompl"
 _LIBRARIES = ("jinja2", "matplotlib", "scipy")

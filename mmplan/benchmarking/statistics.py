@@ -55,6 +55,12 @@ class Difference:
     high: float
     p: float
 
+    @property
+    def cells(self) -> tuple[str, str, str, str]:
+        """Number of pairs, mean, interval and p, for a table."""
+        interval = f"{self.low:+.2f} to {self.high:+.2f}"
+        return str(self.n), f"{self.mean:+.2f}", interval, f"{self.p:.2g}"
+
 
 def proportion(count: int, of: int) -> Proportion:
     """A share and its Wilson interval."""

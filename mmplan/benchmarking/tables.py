@@ -3,63 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from itertools import combinations
-from textwrap import fill
 
 import numpy as np
 
 from mmplan.benchmarking import published
 from mmplan.benchmarking.contests import Contest
+from mmplan.benchmarking.families import family_differences, family_scores
 from mmplan.benchmarking.records import STAGES, Record
 from mmplan.benchmarking.statistics import (
-    Difference,
     Proportion,
     Spread,
     difference,
     proportion,
     spread,
 )
+from mmplan.benchmarking.table import Table, number, rate
 
-_WORDS = frozenset({"problem", "contender", "contenders"})
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table with a title and what must be said about it."""
-
-    title: str
-    note: str
-    header: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-
-    def is_text(self, column: int) -> bool:
-        """Whether a column holds words rather than numbers."""
-        return self.header[column] in _WORDS
-
-    def text(self) -> str:
-        """The table for a terminal, as wide as it is."""
-        widths = [max(map(len, c)) for c in zip(self.header, *self.rows, strict=True)]
-        lines = [
-            "  ".join(
-                cell.ljust(width) if self.is_text(i) else cell.rjust(width)
-                for i, (cell, width) in enumerate(zip(row, widths, strict=True))
-            )
-            for row in (self.header, *self.rows)
-        ]
-        return "\n".join([self.title, "", *lines, "", fill(self.note), ""])
-
-    def markdown(self) -> str:
-        """The table as Markdown."""
-        lines = [self.header, ("---",) * len(self.header), *self.rows]
-        table = "\n".join(f"| {' | '.join(line)} |" for line in lines)
-        return f"### {self.title}\n\n{table}\n\n{self.note}\n"
+# With more problems than this, their rows are for files only.
+_MOST_SHOWN = 12
 
 
 def tables(contests: Sequence[Contest]) -> list[Table]:
-    """All tables that the runs suffice for."""
-    made = (_scores, _differences, _table_1, _times, _plans)
-    return [table for make in made if (table := make(contests)).rows]
+    """All tables that the runs suffice for, the most summary first."""
+    families = [make(contests) for make in (family_scores, family_differences)]
+    problems = [
+        make(contests) for make in (_scores, _differences, _table_1, _times, _plans)
+    ]
+    many = len({c.problem.name for c in contests}) > _MOST_SHOWN
+    made = [*families, *(replace(table, detailed=many) for table in problems)]
+    return [table for table in made if table.rows]
 
 
 def _scores(contests: Sequence[Contest]) -> Table:
@@ -70,10 +44,10 @@ def _scores(contests: Sequence[Contest]) -> Table:
             str(c.evaluations),
             label,
             str(len(runs)),
-            _rate(_successes(runs)),
+            rate(_successes(runs)),
             *_mean_and_deviation(_of_successes(c, label)),
-            _number(_of_successes(c, label).median),
-            _number(spread([r.cycles for r in runs if r.cycles is not None]).mean),
+            number(_of_successes(c, label).median),
+            number(spread([r.cycles for r in runs if r.cycles is not None]).mean),
         )
         for c, label, runs in _each(contests)
     ]
@@ -103,7 +77,8 @@ def _differences(contests: Sequence[Contest]) -> Table:
         for a, b in combinations(contest.contenders, 2):
             found = difference(contest.normalized(a), contest.normalized(b))
             if found is not None:
-                rows.append(_difference_row(contest, f"{a} − {b}", found))
+                problem, budget = contest.problem.name, str(contest.evaluations)
+                rows.append((problem, budget, f"{a} − {b}", *found.cells))
     return Table(
         "Paired differences",
         "Differences of normalized scores on the same seeds, a failed run counting as "
@@ -111,18 +86,6 @@ def _differences(contests: Sequence[Contest]) -> Table:
         "signed-rank test.",
         ("problem", "evaluations", "contenders", "pairs", "difference", "95 %", "p"),
         tuple(rows),
-    )
-
-
-def _difference_row(contest: Contest, name: str, d: Difference) -> tuple[str, ...]:
-    return (
-        contest.problem.name,
-        str(contest.evaluations),
-        name,
-        str(d.n),
-        f"{d.mean:+.2f}",
-        f"{d.low:+.2f} to {d.high:+.2f}",
-        f"{d.p:.2g}",
     )
 
 
@@ -193,11 +156,11 @@ def _plans(contests: Sequence[Contest]) -> Table:
                 contest.problem.name,
                 str(contest.evaluations),
                 label,
-                _rate(proportion(len(verified), len(plans))),
-                _number(spread([p["tried"] for p in plans]).mean),
+                rate(proportion(len(verified), len(plans))),
+                number(spread([p["tried"] for p in plans]).mean),
                 str(sum(p["refuted"] for p in plans)),
-                _number(spread([p["duration"] for p in verified]).mean),
-                _number(1e3 * min(nearest)) if nearest else "",
+                number(spread([p["duration"] for p in verified]).mean),
+                number(1e3 * min(nearest)) if nearest else "",
             )
         )
     return Table(
@@ -243,13 +206,5 @@ def _of_successes(contest: Contest, label: str) -> Spread:
     return spread([score for score in contest.normalized(label).values() if score > 0])
 
 
-def _rate(p: Proportion) -> str:
-    return f"{100 * p.share:.1f} % ({100 * p.low:.1f} to {100 * p.high:.1f})"
-
-
 def _mean_and_deviation(s: Spread) -> tuple[str, str]:
-    return _number(s.mean), _number(s.deviation)
-
-
-def _number(value: float) -> str:
-    return "" if np.isnan(value) else f"{value:.2f}"
+    return number(s.mean), number(s.deviation)

@@ -128,7 +128,8 @@ def _report(options: argparse.Namespace) -> int:
             }
         )
     else:
-        show(*(table.text() for table in report.tables), f"written to {report.page}")
+        short = [table.text() for table in report.tables if not table.detailed]
+        show(*short, f"written to {report.page}")
     return SOLVED
 
 

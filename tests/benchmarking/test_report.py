@@ -14,7 +14,8 @@ import pytest
 from mmplan.benchmarking import Record, Store, write_report
 from mmplan.benchmarking.contests import contests
 from mmplan.benchmarking.published import TABLE_I
-from mmplan.benchmarking.tables import Table, tables
+from mmplan.benchmarking.table import Table
+from mmplan.benchmarking.tables import tables
 from mmplan.exceptions import InputError
 from tests.benchmarking.made import entry, failed, made_up
 
@@ -22,9 +23,11 @@ PNG = b"\x89PNG\r\n\x1a\n"
 LABELS = {"coevolution": "CoEvolution", "random": "RandomSampling"}
 
 
-def a_contest(problem: str, runs: int, evaluations: int = 6940) -> list[Record]:
+def a_contest(
+    problem: str, runs: int, evaluations: int = 6940, draw: int = 0
+) -> list[Record]:
     """Co-evolution ahead of random sampling, which fails once."""
-    rng = np.random.default_rng(0)
+    rng = np.random.default_rng(draw)
     records = [
         made_up(
             problem=problem,
@@ -245,3 +248,45 @@ def test_text_and_markdown_hold_every_cell(folder: Path) -> None:
                 assert cell in wide.markdown()
         lines = wide.text().splitlines()[2 : 3 + len(table.rows)]
         assert len({len(line) for line in lines}) == 1
+
+
+def many_problems() -> list[Record]:
+    """Eight problems of two families; co-evolution is ahead on each."""
+    names = [f"{family}-{i}" for family in ("shelf", "bin") for i in range(4)]
+    return [r for i, name in enumerate(names) for r in a_contest(name, 3, 500, i)]
+
+
+def test_families_are_told_together_and_each_problem_counts_once(
+    tmp_path: Path,
+) -> None:
+    fill(tmp_path, [*many_problems(), *a_contest("wineglass", 3, 500)])
+    with Store(tmp_path) as store:
+        found = [c for c in contests(store) if c.problem.name.startswith("bin")]
+    scores = columns(by_title(tmp_path)["Families of problems"])
+    assert [r["family"] for r in scores] == ["bin"] * 2 + ["shelf"] * 2 + ["all"] * 2
+    row = next(r for r in scores if r["contender"] == "RandomSampling")
+    assert (row["problems"], row["runs"]) == ("4", "12")
+    assert row["success"].startswith("66.7 %")
+    each = [np.mean(list(c.normalized("RandomSampling").values())) for c in found]
+    assert row["mean score"] == f"{np.mean(each):.2f}"
+    ahead = columns(by_title(tmp_path)["Paired differences by family"])
+    together = next(r for r in ahead if r["family"] == "all")
+    assert together["problems"] == "8"
+    low, high = map(float, together["95 %"].split(" to "))
+    assert 0.0 < low < float(together["difference"]) < high
+
+
+def test_a_problem_alone_makes_no_family(tmp_path: Path) -> None:
+    fill(tmp_path, [*a_contest("shelf-0", 3), *a_contest("wineglass", 3)])
+    assert "Families of problems" not in by_title(tmp_path)
+
+
+def test_rows_for_each_of_many_problems_are_for_files_alone(tmp_path: Path) -> None:
+    names = [f"shelf-{i}" for i in range(13)]
+    fill(tmp_path, [record for name in names for record in a_contest(name, 2)])
+    shown = {title: not table.detailed for title, table in by_title(tmp_path).items()}
+    assert shown["Families of problems"]
+    assert not shown["Scores"]
+    page = write_report(tmp_path).page.read_text()
+    assert page.count("<details>") == page.count("</details>") > 0
+    assert "shelf-12" in (tmp_path / "tables.md").read_text()
