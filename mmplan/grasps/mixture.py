@@ -16,7 +16,13 @@ from mmplan.shapes import Array
 class Mixture:
     """The first gene picks the family, the others are its genes, scaled to [0, 1].
 
-    A family with fewer genes than the longest leaves the last ones unused.
+    A family with fewer genes than the longest leaves the last ones unused. Crossover
+    of two members of one family exchanges like genes for like, as without a mixture.
+    A child of two families belongs to one of them and takes the scaled genes of the
+    other for its own: always a valid grasp, in effect a mutation, and less than that
+    where the families are alike, since all put their genes in the same order: first
+    where on the object, then from which direction, then the rest. One population thus
+    holds all families, and those that do not serve the task die out of it.
     """
 
     families: tuple[GraspFamily, ...]
