@@ -114,7 +114,7 @@ class Problem:
     name: str
     robot: Robot
     q_start: Array  # (nq,)
-    base_bounds: Array  # (base joints, 2): where the base may go, m
+    base_bounds: Array  # (base joints, 2): where the base may go, m and rad
     obstacles: tuple[Obstacle, ...]
     objects: tuple[Object, ...]
     tasks: tuple[Task, ...]
@@ -123,6 +123,11 @@ class Problem:
     planner: PlannerSettings = PlannerSettings()
     path: Path | None = None  # the scene file
     fingerprint: str = ""  # SHA-256 over the scene and all files that it uses
+
+    @property
+    def base_stands(self) -> bool:
+        """Whether the base cannot move at all."""
+        return bool((self.base_bounds[:, 0] == self.base_bounds[:, 1]).all())
 
     def object(self, name: str) -> Object:
         """The object of that name."""

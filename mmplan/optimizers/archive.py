@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from mmplan.genes import GeneSpace
+from mmplan.optimizers.bases import BASE_SCALES, base_ways
 from mmplan.scoring import End
 from mmplan.shapes import Array
 
-# Candidates are distinct if a base is this far off (m) or a grasp gene by this share of
-# its range.
+# Candidates are distinct if a base is this far off (m, turns counted as by
+# `BASE_SCALES`) or a grasp gene by this share of its range.
 _BASE_APART = 0.05
 _GRASP_APART = 0.05
 
@@ -95,8 +96,7 @@ def _best(
 
 
 def _apart(a: Triple, b: Triple, grasps: GeneSpace) -> bool:
-    moved = max(
-        float(np.linalg.norm(p - q)) for p, q in zip(a.q_base, b.q_base, strict=True)
-    )
+    ways = [base_ways(p, q) for p, q in zip(a.q_base, b.q_base, strict=True)]
+    moved = max(float(np.linalg.norm(w / BASE_SCALES[: len(w)])) for w in ways)
     turned = np.max(grasps.apart(a.grasp, b.grasp))
     return moved > _BASE_APART or bool(turned > _GRASP_APART)

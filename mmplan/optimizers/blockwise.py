@@ -8,6 +8,7 @@ import numpy as np
 
 from mmplan.genes import GeneSpace
 from mmplan.optimizers.archive import Archive, Triple, distinct
+from mmplan.optimizers.bases import base_ways
 from mmplan.optimizers.lineage import Lineage
 from mmplan.optimizers.optimizer import Queries, SearchSpace
 from mmplan.optimizers.successes import Successes
@@ -42,6 +43,8 @@ class Blockwise:
     get more proposals, the more so the nearer the end of the budget, and converged
     ones give way to new scouts. No knowledge of the arm or the obstacles is used but
     that bases must be free of collision, as in the other optimizers' first draws.
+
+    A base that stands still is tried once for a grasp: then only grasps are searched.
     """
 
     cycles = None
@@ -66,6 +69,10 @@ class Blockwise:
         self._successes = {
             end: Successes(space.bases[end], space.grasps, rng) for end in End
         }
+        # Trying a base again is of no use where there is but one.
+        varied = any(len(placements.genes) for placements in space.bases.values())
+        self._tries = _TRIES if varied else 1
+        self._rounds = _ROUNDS if varied else 1
         self._search = self._forever()
         self._pending = next(self._search)
 
@@ -116,11 +123,11 @@ class Blockwise:
         bases = self._successes[first].bases(grasps, 1)
         q_first, s_first = yield from self._evaluate(first, bases, grasps)
         open_ = s_first > 0.0
-        for _ in range(_ROUNDS):
+        for _ in range(self._rounds):
             rows = np.flatnonzero(open_)
             if len(rows) == 0:
                 return
-            bases = self._successes[second].bases(grasps[rows], _TRIES)
+            bases = self._successes[second].bases(grasps[rows], self._tries)
             q, s = yield from self._evaluate(second, bases, grasps[rows])
             for row, q_second, s_second in zip(rows, q, s.tolist(), strict=True):
                 if s_second > 0.0:
@@ -158,9 +165,9 @@ class Blockwise:
     def _bases_about(self, end: End, parents: list[Lineage], steps: Array) -> Array:
         """Bases (n, m, b) about those of n parents, given the steps of the grasps."""
         q = np.array([p.triple.q_base[end] for p in parents])
-        origin = np.repeat(q[:, None], _TRIES, axis=1)
+        origin = np.repeat(q[:, None], self._tries, axis=1)
         drawn = [
-            p.base_steps(end, step, _TRIES, self._rng)
+            p.base_steps(end, step, self._tries, self._rng)
             for p, step in zip(parents, steps, strict=True)
         ]
         return self._successes[end].contained(origin + np.array(drawn), origin)
@@ -193,10 +200,10 @@ class Blockwise:
 
         What the budget cuts off scores 0.
         """
-        n, m, _ = bases.shape
+        n, m, joints = bases.shape
         queries = Queries(
             np.full(n * m, end, np.int8),
-            bases.reshape(n * m, -1),
+            bases.reshape(n * m, joints),
             np.repeat(grasps, m, axis=0),
         )
         told = yield queries
@@ -218,5 +225,5 @@ def _step(before: Triple, after: Triple, genes: GeneSpace) -> Array:
     width = np.where(genes.range > 0.0, genes.range, 1.0)
     grasp = (after.grasp - before.grasp) / width
     turned = np.mod(grasp + 0.5, 1.0) - 0.5
-    bases = [b - a for a, b in zip(before.q_base, after.q_base, strict=True)]
+    bases = map(base_ways, before.q_base, after.q_base)
     return np.concatenate([*bases, np.where(genes.periodic, turned, grasp)])

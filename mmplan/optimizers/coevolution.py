@@ -27,6 +27,10 @@ class CoEvolution:
     with their children. Populations are kept sorted, fittest first, unevaluated
     children last. The evaluations asked for are those of eq. 3 and of F_Grasp; all are
     asked for anew in every generation.
+
+    A base that stands still has no genes: its population is that one placement, which
+    is not evolved, and a cycle is one generation of the grasps, whose fitness F_Grasp
+    is of that placement at either end. The budget buys more such cycles.
     """
 
     def __init__(
@@ -43,7 +47,7 @@ class CoEvolution:
         self._space = space
         self._settings = settings
         self._rng = rng
-        self._bases = {end: space.bases[end].sample(settings.bases, rng) for end in End}
+        self._bases = {end: self._first_bases(end) for end in End}
         self._grasps = space.grasps.sample(settings.grasps, rng)
         self._asked = 0
         self._search = self._cycle_forever()
@@ -52,8 +56,11 @@ class CoEvolution:
     @property
     def cycles(self) -> float:
         """How many cycles the evaluations told so far amount to."""
-        settings = self._settings
-        cycle = 2 * settings.partners * (settings.bases + settings.grasps)
+        k = self._settings.partners
+        cycle = 0
+        for end in End:
+            bases, n = self._bases[end], len(self._bases[end])
+            cycle += min(k, n) * len(self._grasps) + (n * k if bases.size else 0)
         return self._asked / cycle
 
     def ask(self, limit: int) -> Queries:
@@ -81,6 +88,11 @@ class CoEvolution:
         triples = archive.triples(grasps, bases)
         return distinct(triples, self._space.grasps, most)
 
+    def _first_bases(self, end: End) -> Array:
+        placements = self._space.bases[end]
+        n = self._settings.bases if len(placements.genes) else 1
+        return placements.sample(n, self._rng)
+
     def _cycle_forever(self) -> _Search:
         while True:
             for end in End:
@@ -90,6 +102,8 @@ class CoEvolution:
     def _evolve_bases(self, end: End) -> _Search:
         """A generation; F_Base is the best score with the k fittest grasps (eq. 3)."""
         bases = self._bases[end]
+        if bases.size == 0:
+            return
         q_base = self._space.bases[end].q_base(bases)
         scores = yield from self._ask_all(end, q_base, self._fittest_grasps())
         if scores is not None:

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from mmplan.optimizers.archive import Triple
+from mmplan.optimizers.bases import BASE_SCALES
 from mmplan.scoring import End
 from mmplan.shapes import Array
 
-# First steps: of the bases in m, of grasp genes in shares of their ranges.
+# First steps: of the bases in m (of their headings as `BASE_SCALES` has it), of grasp
+# genes in shares of their ranges.
 _BASE_STEP = 0.15
 _GRASP_STEP = 0.12
 _LEARNING = 0.15
@@ -34,8 +36,8 @@ class Lineage:
     @classmethod
     def of(cls, triple: Triple) -> Lineage:
         """A line that begins at a triple."""
-        bases = sum(len(q) for q in triple.q_base)
-        deviations = [_BASE_STEP] * bases + [_GRASP_STEP] * len(triple.grasp)
+        bases = [_BASE_STEP * BASE_SCALES[: len(q)] for q in triple.q_base]
+        deviations = np.concatenate([*bases, [_GRASP_STEP] * len(triple.grasp)])
         return cls(triple, np.diag(np.square(deviations)))
 
     @property
@@ -52,7 +54,7 @@ class Lineage:
     def base_steps(
         self, end: End, grasp_step: Array, n: int, rng: np.random.Generator
     ) -> Array:
-        """Steps of one base, (n, base joints), m, given that of the grasp."""
+        """Steps of one base, (n, base joints), m and rad, given that of the grasp."""
         base, grasp, C = self._base(end), self._grasp, self.covariance
         gain = np.linalg.solve(C[grasp, grasp], C[grasp, base]).T
         root = np.linalg.cholesky(C[base, base] - gain @ C[grasp, base])

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from mmplan.genes import GeneSpace
 from mmplan.optimizers.archive import Archive, Triple
-from mmplan.optimizers.bases import BasePlacements
+from mmplan.optimizers.bases import Placements
 from mmplan.problem import OptimizerSettings
 from mmplan.scoring import End
 from mmplan.shapes import Array
@@ -20,7 +20,7 @@ from mmplan.shapes import Array
 class SearchSpace:
     """Where an optimizer searches: bases at both ends, grasps."""
 
-    bases: dict[End, BasePlacements]
+    bases: dict[End, Placements]
     grasps: GeneSpace
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from mmplan.optimizers.archive import Archive, Triple
-from mmplan.optimizers.bases import BasePlacements
+from mmplan.optimizers.bases import BasePlacements, OnePlacement, Placements
 from mmplan.optimizers.optimizer import Optimizer, Queries, SearchSpace
 from mmplan.scoring import End, Outcome, ScoreFunction
 from mmplan.shapes import Array
@@ -115,12 +115,21 @@ def _rises(
     return rises
 
 
-def _placements(score: ScoreFunction, end: End) -> BasePlacements:
-    robot = score.problem.robot
+def _placements(score: ScoreFunction, end: End) -> Placements:
+    problem, robot = score.problem, score.problem.robot
     x, y, _ = score.centre_of_mass(end)
+
+    def is_free(q_base: Array) -> npt.NDArray[np.bool_]:
+        free: npt.NDArray[np.bool_] = score.base_outcomes(end, q_base) == Outcome.SCORED
+        return free
+
+    if problem.base_stands:
+        return OnePlacement(problem.base_bounds[:, 0], is_free)
+    lower, upper = robot.base.lower.tolist(), robot.base.upper.tolist()
     return BasePlacements(
         centre=(float(x), float(y)),
         inner=robot.base_radius,
         outer=robot.reach,
-        is_free=lambda q_base: score.base_outcomes(end, q_base) == Outcome.SCORED,
+        is_free=is_free,
+        heading=(lower[2], upper[2]) if len(robot.base) > 2 else None,
     )

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from mmplan.genes import GeneSpace
-from mmplan.optimizers.bases import BasePlacements
+from mmplan.optimizers.bases import BASE_SCALES, Placements
 from mmplan.optimizers.optimizer import Queries
 from mmplan.shapes import Array
 
 _NEAR_GRASPS = 0.25  # share of grasps drawn near those that have scored
 _NEAR_BASES = 0.5  # share of bases drawn near those that have scored
 _GRASP_STEP = 0.1  # share of the range
-_BASE_STEP = 0.1  # m
+_BASE_STEP = 0.1  # m, of headings as `BASE_SCALES` has it
 _REDRAWS = 4
 _MOST = 512  # latest successes that are remembered
 
@@ -21,7 +21,7 @@ class Successes:
     """Pairs of base and grasp above 0 at one end."""
 
     def __init__(
-        self, placements: BasePlacements, genes: GeneSpace, rng: np.random.Generator
+        self, placements: Placements, genes: GeneSpace, rng: np.random.Generator
     ) -> None:
         """Start with none."""
         self._placements = placements
@@ -29,7 +29,7 @@ class Successes:
         self._rng = rng
         self._tries = 0
         self._hits = 0
-        self._q_base = np.empty((0, 2))
+        self._q_base = np.empty((0, placements.joints))
         self._grasps = np.empty((0, len(genes)))
 
     @property
@@ -59,7 +59,7 @@ class Successes:
         """M bases for each grasp (n, d), (n, m, b), some near those of like grasps."""
         n = len(grasps)
         drawn = self._placements.q_base(self._placements.sample(n * m, self._rng))
-        drawn = drawn.reshape(n, m, -1)
+        drawn = drawn.reshape(n, m, self._placements.joints)
         if len(self._grasps) < m:
             return drawn
         apart = self._genes.apart(grasps[:, None], self._grasps[None])
@@ -67,7 +67,8 @@ class Successes:
         unlike += _GRASP_STEP * self._rng.random(unlike.shape)
         like = np.argpartition(unlike, m - 1, axis=1)[:, :m]
         origin = self._q_base[like]
-        step = _BASE_STEP * self._rng.normal(size=origin.shape)
+        scales = BASE_SCALES[: self._placements.joints]
+        step = _BASE_STEP * scales * self._rng.normal(size=origin.shape)
         near = self._rng.random((n, m)) < _NEAR_BASES
         return np.where(near[..., None], self.contained(origin + step, origin), drawn)
 
@@ -76,8 +77,8 @@ class Successes:
 
         One that collides is drawn nearer to its origin, which is free, time and again.
         """
-        shape = wanted.shape
-        target, start = wanted.reshape(-1, shape[-1]), origin.reshape(-1, shape[-1])
+        shape, n = wanted.shape, int(np.prod(wanted.shape[:-1]))
+        target, start = wanted.reshape(n, shape[-1]), origin.reshape(n, shape[-1])
         result, left = start.copy(), np.arange(len(start))
         for k in range(_REDRAWS):
             part = target[left] - start[left]
