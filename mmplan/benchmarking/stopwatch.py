@@ -98,6 +98,14 @@ class _TimedInverseKinematics:
     solver: InverseKinematics
     watch: Stopwatch
 
+    @property
+    def complete(self) -> bool:
+        return self.solver.complete
+
+    @property
+    def explanation(self) -> str:
+        return self.solver.explanation
+
     def solve(self, T_base_tool: Array) -> Solutions:
         with self.watch.stage(IK):
             return self.solver.solve(T_base_tool)

@@ -10,7 +10,7 @@ representation", IJRR 1986. Here the branches are vectors.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -73,6 +73,8 @@ class Puma:
     T_tool_wrist: Array  # (4, 4)
     lower: Array  # (6,)
     upper: Array  # (6,)
+    complete: bool = field(default=True, init=False)
+    explanation: str = field(default="the Puma 560 in closed form", init=False)
 
     def solve(self, T_base_tool: Array) -> Solutions:
         """All solutions for tool poses (n, 4, 4) in the frame of the mobile base."""

@@ -1,0 +1,106 @@
+"""The last three joints of an arm, from the rotation that is left for them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from mmplan.ik.branches import Index, Pruning
+from mmplan.ik.subproblems import Angles, cross, dot, rotate, subproblem_1, subproblem_4
+from mmplan.shapes import Array
+
+# Axes whose cosine is below this are perpendicular.
+_PERPENDICULAR = 1e-12
+# Below this sine of the angle between the first and last axes they are one.
+_ALIGNED = 1e-10
+
+
+class WristAngles(NamedTuple):
+    """Solutions (m,) and the number of the case of each."""
+
+    case: Index
+    first: Array
+    middle: Array
+    last: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Wrist:
+    """Three turns about fixed axes (3,) that make up a given rotation.
+
+    Where the first and last axes are one only the sum of their angles matters: the
+    first stands at `idle` (rad), and the last takes the rest.
+    """
+
+    first: Array
+    middle: Array
+    last: Array
+    idle: float
+
+    @property
+    def across(self) -> Array:
+        """A unit vector (3,) perpendicular to the last axis."""
+        helper = np.eye(3)[np.argmin(np.abs(self.last))]
+        vector = np.cross(self.last, helper)
+        across: Array = vector / np.linalg.norm(vector)
+        return across
+
+    def images(self, R: Array) -> Array:
+        """Where rotations (3, 3, m), columns first, take last and across, (3, 2, m)."""
+        parts = np.stack([self.last, self.across])
+        images: Array = np.tensordot(parts, R, 1).swapaxes(0, 1)
+        return images
+
+    def solve(
+        self, images: Array, pruning: Pruning, joints: tuple[int, int], slack: float
+    ) -> WristAngles:
+        """The angles for m rotations R, given `images` (3, 2, m): of last and across.
+
+        `joints` are the numbers of the middle and the last joint.
+        """
+        case, middle = pruning.split(joints[0], self._middle(images[:, 0], slack))
+        last, across = images[:, 0, case], images[:, 1, case]
+        turned = rotate(self.middle, middle, self.last[:, None])
+        first = subproblem_1(self.first, turned, last)
+        first[self._aligned(last)] = self.idle
+        rest = rotate(-self.first, first, np.stack([last, across], axis=1))
+        # Anew from what is left, which is exact where the first angle is not: near
+        # the alignment of the axes the cosine of the middle one says little.
+        middle = subproblem_1(self.middle, self.last[:, None], rest[:, 0])
+        rest = rotate(-self.middle, middle, rest[:, 1])
+        angle = subproblem_1(self.last, self.across[:, None], rest)
+        keep = pruning.allows(joints[1], angle)
+        return WristAngles(case[keep], first[keep], middle[keep], angle[keep])
+
+    def _middle(self, last: Array, slack: float) -> Angles:
+        """The middle angles, which tilt the last axis against the first as asked."""
+        height = self.first @ last
+        angles = subproblem_4(
+            self.middle, self.last[:, None], self.first[:, None], height, slack
+        )
+        cosines = self.middle @ np.array([self.first, self.last]).T
+        if np.abs(cosines).max() > _PERPENDICULAR:
+            return angles
+        # With perpendicular axes the sine is known as well as the cosine.
+        sine = self._sine(last)
+        spread = np.arctan2(sine, height)
+        sine_0 = self.first @ np.cross(self.middle, self.last)
+        zero = np.arctan2(sine_0, self.first @ self.last)
+        exists = angles.exists[0]
+        return Angles(
+            np.array([zero + spread, zero - spread]),
+            np.array([exists, exists & (sine > _ALIGNED)]),
+        )
+
+    def _sine(self, last: Array) -> Array:
+        """The sine (m,) of the angle between the first axis and the images."""
+        normal = cross(self.first, last)
+        sine: Array = np.sqrt(dot(normal, normal))
+        return sine
+
+    def _aligned(self, last: Array) -> npt.NDArray[np.bool_]:
+        aligned: npt.NDArray[np.bool_] = self._sine(last) < _ALIGNED
+        return aligned
