@@ -2,26 +2,16 @@
 
 from __future__ import annotations
 
-import contextlib
-import hashlib
-import os
-import tempfile
-import zipfile
-from pathlib import Path
-
 import coal
 import numpy as np
-import numpy.typing as npt
 
+from mmplan.collision.decomposition import Effort, Triangles, decomposed
 from mmplan.exceptions import InputError
 from mmplan.shapes import Array, Mesh
 
 # A mesh whose hull is at most this much larger than itself is taken as convex.
 _CONVEX_VOLUME_RATIO = 1.01
-# Concavity at which the decomposition stops, as a share of the mesh's size.
-_CONCAVITY = 0.02
-
-Triangles = npt.NDArray[np.int64]  # (t, 3), indices into the vertices
+_EFFORT = Effort(concavity=0.02, iterations=150)
 
 
 def convex_pieces(mesh: Mesh) -> list[Array]:
@@ -39,7 +29,7 @@ def convex_pieces(mesh: Mesh) -> list[Array]:
     hull_volume = hull(vertices).computeVolume()
     if _volume(vertices, triangles) * _CONVEX_VOLUME_RATIO >= hull_volume:
         return [vertices]
-    return _decomposed(mesh, vertices, triangles)
+    return decomposed(mesh.path, vertices, triangles, _EFFORT)
 
 
 def hull(points: Array) -> coal.ConvexBase:
@@ -50,19 +40,32 @@ def hull(points: Array) -> coal.ConvexBase:
 
 
 def _load(mesh: Mesh) -> tuple[Array, Triangles]:
+    vertices, triangles = read_triangles(read_mesh(mesh))
+    if fault := _fault(vertices, triangles):
+        raise InputError(f"{mesh.path}: this mesh {fault}")
+    return vertices, triangles
+
+
+def read_mesh(mesh: Mesh) -> coal.BVHModelBase:
+    """The surface in a file, closed or not.
+
+    Raises:
+        InputError: The file cannot be read.
+    """
     try:
-        model = coal.MeshLoader().load(str(mesh.path), np.array(mesh.scale))
+        return coal.MeshLoader().load(str(mesh.path), np.array(mesh.scale))
     except (RuntimeError, ValueError) as error:
         raise InputError(
             f"{mesh.path}: this mesh cannot be read: {_reason(error)}"
         ) from error
-    vertices = np.array(model.vertices())
+
+
+def read_triangles(surface: coal.BVHModelBase) -> tuple[Array, Triangles]:
+    """The vertices (n, 3) of a surface and its triangles."""
     # coal's triangles raise no IndexError past their end, so that list() fails
-    corners = [model.tri_indices(i) for i in range(model.num_tris)]
+    corners = [surface.tri_indices(i) for i in range(surface.num_tris)]
     triangles = np.array([(c[0], c[1], c[2]) for c in corners], dtype=np.int64)
-    if fault := _fault(vertices, triangles):
-        raise InputError(f"{mesh.path}: this mesh {fault}")
-    return vertices, triangles
+    return np.array(surface.vertices()), triangles
 
 
 def _reason(error: Exception) -> str:
@@ -102,58 +105,3 @@ def _volume(vertices: Array, triangles: Triangles) -> float:
     """The volume inside a closed mesh by the divergence theorem."""
     a, b, c = (vertices[triangles[:, i]] for i in range(3))
     return abs(float(np.einsum("ij,ij->", a, np.cross(b, c)))) / 6.0
-
-
-def _decomposed(mesh: Mesh, vertices: Array, triangles: Triangles) -> list[Array]:
-    digest = hashlib.sha256(vertices.tobytes() + triangles.tobytes())
-    digest.update(repr(_CONCAVITY).encode())
-    cached = _cache_folder() / f"{digest.hexdigest()}.npz"
-    pieces = _read(cached)
-    if pieces is None:
-        pieces = _coacd(mesh, vertices, triangles)
-        # Without a cache the pieces are made anew each time.
-        with contextlib.suppress(OSError):
-            _write(cached, pieces)
-    return pieces
-
-
-def _coacd(mesh: Mesh, vertices: Array, triangles: Triangles) -> list[Array]:
-    try:
-        import coacd
-    except ImportError as error:
-        raise InputError(
-            f"{mesh.path}: this mesh is not convex; to cut it into convex pieces "
-            "install the extra: pip install 'mmplan[meshes]'"
-        ) from error
-    coacd.set_log_level("error")
-    parts = coacd.run_coacd(
-        coacd.Mesh(vertices, triangles), threshold=_CONCAVITY, seed=0
-    )
-    return [np.asarray(points, dtype=np.float64) for points, _ in parts]
-
-
-def _cache_folder() -> Path:
-    root = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(root) / "mmplan" / "meshes"
-
-
-def _read(path: Path) -> list[Array] | None:
-    """The pieces in a file of the cache; None where there is no sound one."""
-    try:
-        with path.open("rb") as file, np.load(file) as pieces:
-            return [pieces[f"arr_{i}"] for i in range(len(pieces.files))]
-    except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile):
-        return None
-
-
-def _write(path: Path, pieces: list[Array]) -> None:
-    """Write the pieces so that the file appears whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-        part = Path(file.name)
-        try:
-            np.savez(file, *pieces)
-            file.close()
-            part.replace(path)
-        finally:
-            part.unlink(missing_ok=True)

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmplan.collision import meshes
+from mmplan.collision import decomposition, meshes
+from mmplan.collision.decomposition import Effort
 from mmplan.collision.solids import geometries
 from mmplan.exceptions import InputError
 from mmplan.shapes import Array, Mesh
@@ -41,16 +42,16 @@ def u_mesh(tmp_path: Path) -> Mesh:
 
 
 @pytest.fixture
-def cutter(monkeypatch: pytest.MonkeyPatch) -> list[Mesh]:
+def cutter(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     """Replaces CoACD by something quick; lists the meshes that it has cut."""
-    cut: list[Mesh] = []
+    cut: list[Path] = []
 
-    def halves(mesh: Mesh, vertices: Array, triangles: Array) -> list[Array]:
+    def halves(path: Path, vertices: Array, triangles: Array, _: Effort) -> list[Array]:
         assert vertices.shape[1] == triangles.shape[1] == 3
-        cut.append(mesh)
+        cut.append(path)
         return HALVES
 
-    monkeypatch.setattr(meshes, "_coacd", halves)
+    monkeypatch.setattr(decomposition, "_cut", halves)
     return cut
 
 
@@ -171,12 +172,12 @@ def test_a_concave_mesh_without_the_extra(
 
 
 def test_a_concave_mesh_is_cut_once(
-    u_mesh: Mesh, cutter: list[Mesh], cache: Path
+    u_mesh: Mesh, cutter: list[Path], cache: Path
 ) -> None:
     for _ in range(3):
         pieces = meshes.convex_pieces(u_mesh)
         np.testing.assert_array_equal(pieces, HALVES)
-    assert cutter == [u_mesh]
+    assert cutter == [u_mesh.path]
     (file,) = cache.iterdir()  # and nothing half-written beside it
     assert file.suffix == ".npz"
 
@@ -185,21 +186,21 @@ def test_many_pieces_keep_their_order(
     u_mesh: Mesh, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     many = [TETRAHEDRON + i for i in range(12)]
-    monkeypatch.setattr(meshes, "_coacd", lambda *_: many)
+    monkeypatch.setattr(decomposition, "_cut", lambda *_: many)
     for _ in range(2):
         np.testing.assert_array_equal(meshes.convex_pieces(u_mesh), many)
 
 
-def test_another_scale_is_another_mesh(u_mesh: Mesh, cutter: list[Mesh]) -> None:
+def test_another_scale_is_another_mesh(u_mesh: Mesh, cutter: list[Path]) -> None:
     twice = Mesh(u_mesh.path, (2.0, 2.0, 2.0))
     meshes.convex_pieces(u_mesh)
     meshes.convex_pieces(twice)
-    assert cutter == [u_mesh, twice]
+    assert cutter == [u_mesh.path, twice.path]
 
 
 @pytest.mark.parametrize("keep", [0, 1, 100, -30])
 def test_a_corrupt_entry_is_made_anew(
-    u_mesh: Mesh, cutter: list[Mesh], cache: Path, keep: int
+    u_mesh: Mesh, cutter: list[Path], cache: Path, keep: int
 ) -> None:
     meshes.convex_pieces(u_mesh)
     (file,) = cache.iterdir()
@@ -212,7 +213,7 @@ def test_a_corrupt_entry_is_made_anew(
 
 
 def test_an_entry_whose_bytes_have_changed_is_made_anew(
-    u_mesh: Mesh, cutter: list[Mesh], cache: Path
+    u_mesh: Mesh, cutter: list[Path], cache: Path
 ) -> None:
     meshes.convex_pieces(u_mesh)
     (file,) = cache.iterdir()
@@ -224,7 +225,7 @@ def test_an_entry_whose_bytes_have_changed_is_made_anew(
 
 
 def test_a_cache_that_cannot_be_written_is_done_without(
-    u_mesh: Mesh, cutter: list[Mesh], cache: Path
+    u_mesh: Mesh, cutter: list[Path], cache: Path
 ) -> None:
     cache.parent.parent.write_text("a file where the folder should be")
     for _ in range(2):
@@ -233,7 +234,7 @@ def test_a_cache_that_cannot_be_written_is_done_without(
 
 
 def test_a_write_that_fails_leaves_nothing(
-    u_mesh: Mesh, cutter: list[Mesh], cache: Path, monkeypatch: pytest.MonkeyPatch
+    u_mesh: Mesh, cutter: list[Path], cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
@@ -241,11 +242,11 @@ def test_a_write_that_fails_leaves_nothing(
     monkeypatch.setattr(np, "savez", full)
     np.testing.assert_array_equal(meshes.convex_pieces(u_mesh), HALVES)
     assert list(cache.iterdir()) == []
-    assert cutter == [u_mesh]
+    assert cutter == [u_mesh.path]
 
 
 def test_writers_at_the_same_time_do_no_harm(
-    u_mesh: Mesh, cutter: list[Mesh], cache: Path
+    u_mesh: Mesh, cutter: list[Path], cache: Path
 ) -> None:
     def cut(_: int) -> list[Array]:
         return meshes.convex_pieces(u_mesh)
