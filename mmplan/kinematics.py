@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 import pinocchio as pin
 
 from mmplan.shapes import Array
@@ -47,14 +48,40 @@ def joint_placements(model: pin.Model, q: Array) -> Array:
     return ForwardKinematics(model)(q)
 
 
-def tool_jacobians(model: pin.Model, frame: int, q: Array, columns: Array) -> Array:
-    """Jacobians (n, 6, k) of a frame, in its own axes, of the joints in `columns`."""
-    data = model.createData()
-    J = np.empty((len(q), 6, len(columns)))
-    for i, configuration in enumerate(q):
-        full = pin.computeFrameJacobian(model, data, configuration, frame)
-        J[i] = full[:, columns]
-    return J
+class FrameJacobians:
+    """Jacobians of one frame for many configurations, from the poses of all joints."""
+
+    def __init__(
+        self, model: pin.Model, frame: int, columns: npt.NDArray[np.int_]
+    ) -> None:
+        """Prepare for a frame by its id and the joints at the places `columns` in v."""
+        self._joint = int(model.frames[frame].parentJoint)
+        self._offset = model.frames[frame].placement.translation
+        joint_of = {int(model.joints[j].idx_v): j for j in range(1, model.njoints)}
+        self._columns = [joint_of[column] for column in columns.tolist()]
+        moving = np.isin(self._columns, list(model.supports[self._joint]))
+        axes = [motion_axis(model, joint) for joint in self._columns]
+        twists = np.array(axes).reshape(-1, 6) * moving[:, None]
+        self._linear, self._angular = np.split(twists, 2, axis=1)
+
+    def __call__(self, T_world_joint: Array) -> Array:
+        """J (n, 6, k) at poses (n, njoints, 4, 4), linear above angular.
+
+        It gives velocities of the frame's origin in the axes of the world.
+        """
+        T_frame = T_world_joint[:, self._joint]
+        origin = T_frame[:, :3, :3] @ self._offset + T_frame[:, :3, 3]
+        T = T_world_joint[:, self._columns]
+        turned = T[..., :3, :3] @ np.stack([self._linear, self._angular], axis=2)
+        arm = origin[:, None] - T[..., :3, 3]
+        J = np.empty((len(T), 6, len(self._columns)))
+        J[:, 3:] = turned[..., 1].transpose(0, 2, 1)
+        x, y, z = arm.transpose(2, 0, 1)
+        a, b, c = turned[..., 1].transpose(2, 0, 1)
+        J[:, 0] = turned[..., 0, 0] + b * z - c * y
+        J[:, 1] = turned[..., 1, 0] + c * x - a * z
+        J[:, 2] = turned[..., 2, 0] + a * y - b * x
+        return J
 
 
 def motion_axis(model: pin.Model, joint: int) -> Array:

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from mmplan.kinematics import (
     ForwardKinematics,
+    FrameJacobians,
     joint_placements,
     motion_axis,
-    tool_jacobians,
 )
 from mmplan.shapes import Array
 from tests.honest import puma
@@ -42,6 +42,8 @@ def crooked_arm() -> pin.Model:
             pin.exp6(rng.uniform(-1, 1, 6)),
             f"j{number}",
         )
+        offset = pin.exp6(rng.uniform(-1, 1, 6))
+        model.addFrame(pin.Frame(f"f{number}", parent, offset, pin.FrameType.OP_FRAME))
     return model
 
 
@@ -88,20 +90,37 @@ def test_no_configurations_have_no_placements() -> None:
 
 @given(SEEDS)
 def test_jacobians_are_what_finite_differences_say(seed: int) -> None:
-    """Columns are twists in the tool's own axes: T' = T exp(J dq)."""
+    """Columns are velocities of the frame's origin in the world's axes."""
     robot = puma()
     columns = robot.arm.indices
     q = draw(robot.model, 2, seed)
-    J = tool_jacobians(robot.model, robot.tool_frame, q, columns)
+    jacobians = FrameJacobians(robot.model, robot.tool_frame, columns)
+    J = jacobians(joint_placements(robot.model, q))
     assert J.shape == (2, 6, len(columns))
     for k, column in enumerate(columns):
         step = np.zeros(robot.model.nq)
         step[column] = STEP
         for row in range(len(q)):
+            R = robot.tool_pose(q[row])[:3, :3]
             before = pin.SE3(robot.tool_pose(q[row] - step))
             after = pin.SE3(robot.tool_pose(q[row] + step))
             twist = pin.log6(before.actInv(after)).vector / (2 * STEP)
-            np.testing.assert_allclose(J[row, :, k], twist, atol=1e-7)
+            in_world = np.concatenate([R @ twist[:3], R @ twist[3:]])
+            np.testing.assert_allclose(J[row, :, k], in_world, atol=1e-7)
+
+
+@given(SEEDS, st.sampled_from(sorted(MODELS)), st.data())
+def test_jacobians_are_pinocchios(seed: int, name: str, data: st.DataObject) -> None:
+    model = MODELS[name]
+    frame = data.draw(st.integers(1, model.nframes - 1), "frame")
+    some = st.lists(st.integers(0, model.nv - 1), min_size=1, unique=True)
+    columns = np.array(data.draw(some, "columns"))
+    q = draw(model, 3, seed)
+    J = FrameJacobians(model, frame, columns)(joint_placements(model, q))
+    axes, workspace = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED, model.createData()
+    for found, row in zip(J, q, strict=True):
+        expected = pin.computeFrameJacobian(model, workspace, row, frame, axes)
+        np.testing.assert_allclose(found, expected[:, columns], atol=1e-12)
 
 
 def test_the_axes_of_joints_are_twists() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mmplan.kinematics import tool_jacobians
+from mmplan.kinematics import ForwardKinematics, FrameJacobians
 from mmplan.robot import Robot
 from mmplan.scoring.term import Grasped
 from mmplan.shapes import Array
@@ -18,16 +18,23 @@ class Manipulability:
 
     def __init__(self, robot: Robot) -> None:
         """Prepare for one robot."""
-        self._robot = robot
+        self._kinematics = ForwardKinematics(robot.model)
+        self._jacobians = FrameJacobians(
+            robot.model, robot.tool_frame, robot.arm.indices
+        )
 
     def __call__(self, grasped: Grasped) -> Array:
         """M of each configuration, (n,)."""
-        return manipulability(self._robot, grasped.q)
+        return self.at(self._kinematics(grasped.q))
+
+    def at(self, T_world_joint: Array) -> Array:
+        """M, (n,), from the poses (n, njoints, 4, 4) of all joints."""
+        J = self._jacobians(T_world_joint)  # (n, 6, k)
+        smallest = np.linalg.eigvalsh(J @ J.transpose(0, 2, 1))[:, 0]
+        M: Array = np.maximum(smallest, 0.0).astype(np.float64)
+        return M
 
 
 def manipulability(robot: Robot, q: Array) -> Array:
     """The smallest eigenvalue of J Jᵀ at configurations q (n, nq), (n,)."""
-    J = tool_jacobians(robot.model, robot.tool_frame, q, robot.arm.indices)  # (n, 6, k)
-    smallest = np.linalg.eigvalsh(J @ J.transpose(0, 2, 1))[:, 0]
-    M: Array = np.maximum(smallest, 0.0).astype(np.float64)
-    return M
+    return Manipulability(robot).at(ForwardKinematics(robot.model)(q))
