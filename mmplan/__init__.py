@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from mmplan.pipeline import solve
     from mmplan.plan import Plan
     from mmplan.problem import Problem
+    from mmplan.robot_build import load_robot
     from mmplan.scene_file import load_problem
     from mmplan.schema import scene_schema
     from mmplan.verification import examine, verify
@@ -35,6 +36,7 @@ __all__ = [
     "VerificationError",
     "examine",
     "load_problem",
+    "load_robot",
     "scene_schema",
     "solve",
     "verify",
@@ -47,6 +49,7 @@ _LATE = {
     "Problem": "mmplan.problem",
     "examine": "mmplan.verification",
     "load_problem": "mmplan.scene_file",
+    "load_robot": "mmplan.robot_build",
     "scene_schema": "mmplan.schema",
     "solve": "mmplan.pipeline",
     "verify": "mmplan.verification",

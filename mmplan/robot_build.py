@@ -4,25 +4,43 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
+from pathlib import Path
+from typing import cast
 
 import numpy as np
 import pinocchio as pin
 
+from mmplan import assets
 from mmplan.exceptions import InputError
+from mmplan.files.suggestions import unknown
 from mmplan.ik import InverseKinematics
 from mmplan.ik.solvers import SOLVERS
-from mmplan.robot import JointGroup, Robot, ScoreScales
-from mmplan.robot_file import RobotDescription
+from mmplan.robot import BaseType, Follower, JointGroup, Robot, ScoreScales
+from mmplan.robot_file import RobotDescription, load_robot_description
+from mmplan.robot_measures import base_radius, reach
+from mmplan.robot_model import robot_model
 from mmplan.shapes import Array, read_only
 
 
+def load_robot(name: str | Path) -> Robot:
+    """A robot that is shipped, by its name, or that of a robot.yaml, by its path.
+
+    Raises:
+        InputError: There is no such robot, or its files are faulty.
+    """
+    path = assets.find_robot(str(name), Path())
+    if path is None:
+        raise InputError(unknown("robot", str(name), assets.robot_names()))
+    return build_robot(load_robot_description(path))
+
+
 def build_robot(description: RobotDescription) -> Robot:
-    """The robot of a description: its URDF read and everything checked against it.
+    """The robot of a description: its model built and everything checked against it.
 
     Raises:
         InputError: The URDF cannot be read, or does not have what robot.yaml names.
     """
-    model, geometry = _models(description)
+    model, geometry = robot_model(description)
     _raise_if_any(description, _faults(description, model))
     base, arm, hand = (
         _group(model, names, description)
@@ -35,6 +53,7 @@ def build_robot(description: RobotDescription) -> Robot:
     _raise_if_any(description, _value_faults(description, arm, hand))
     tool_frame = int(model.getFrameId(description.tool, pin.FrameType.BODY))
     _add_pairs(description, model, geometry)
+    base_joint = model.getJointId(base.names[-1]) if len(base) else 0
     return Robot(
         name=description.name,
         description=description.description,
@@ -43,13 +62,15 @@ def build_robot(description: RobotDescription) -> Robot:
         base=base,
         arm=arm,
         hand=hand,
-        base_type=description.base_type,
-        base_radius=description.base_radius,
-        reach=description.reach,
+        base_type=cast(BaseType, description.base_type),
+        turning_radius=description.turning_radius,
+        base_radius=description.base_radius or base_radius(geometry, base_joint),
+        reach=description.reach or reach(model, arm, base_joint, tool_frame),
         tool_frame=tool_frame,
         hand_open=read_only(description.hand_open),
         hand_closed=read_only(description.hand_closed),
         ik=_inverse_kinematics(description, model, tool_frame),
+        ik_solver=description.ik_solver,
         configurations={
             name: read_only(q) for name, q in description.configurations.items()
         },
@@ -58,24 +79,6 @@ def build_robot(description: RobotDescription) -> Robot:
         ),
         path=description.path,
     )
-
-
-def _models(description: RobotDescription) -> tuple[pin.Model, pin.GeometryModel]:
-    """The kinematic model and the collision bodies, without any pairs yet."""
-    urdf = description.urdf
-    if not urdf.is_file():
-        raise InputError(f"{description.path}: urdf: no such file: {urdf}")
-    try:
-        model = pin.buildModelFromUrdf(str(urdf))
-        geometry = pin.buildGeomFromUrdf(
-            model,
-            str(urdf),
-            pin.GeometryType.COLLISION,
-            package_dirs=[str(folder) for folder in description.package_dirs],
-        )
-    except (RuntimeError, ValueError) as error:
-        raise InputError(f"{urdf}: this URDF cannot be read: {error}") from error
-    return model, geometry
 
 
 def _raise_if_any(description: RobotDescription, faults: Iterator[str]) -> None:
@@ -122,7 +125,7 @@ def _joint_faults(
 def _limit_faults(model: pin.Model, joint: pin.JointModel, name: str) -> Iterator[str]:
     lower = float(model.lowerPositionLimit[joint.idx_q])
     upper = float(model.upperPositionLimit[joint.idx_q])
-    if not (np.isfinite([lower, upper]).all() and lower < upper):
+    if not lower < upper:
         yield f"joint '{name}' needs position limits in the URDF, lower below upper"
     if not 0.0 < float(model.velocityLimit[joint.idx_v]) < np.inf:
         yield f"joint '{name}' needs a velocity limit above 0 in the URDF"
@@ -150,7 +153,21 @@ def _group(
         upper=read_only(model.upperPositionLimit[indices]),
         velocity=read_only(model.velocityLimit[indices]),
         acceleration=read_only([description.acceleration[n] for n in names]),
+        wraps=np.array([description.facts.joints[n].continuous for n in names], bool),
+        followers=tuple(_followers(model, names, description)),
     )
+
+
+def _followers(
+    model: pin.Model, names: Sequence[str], description: RobotDescription
+) -> Iterator[Follower]:
+    for name in names:
+        if mimic := description.mimics.get(name):
+            index, leader = (
+                int(model.joints[model.getJointId(n)].idx_q)
+                for n in (name, mimic.leader)
+            )
+            yield Follower(index, leader, mimic.multiplier, mimic.offset)
 
 
 def _value_faults(

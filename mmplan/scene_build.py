@@ -50,13 +50,14 @@ def build_problem(scene: SceneFile) -> Problem:
 
 
 def _start(robot: Robot, start: StartSection) -> Array:
-    """The start configuration (nq,); joints of no group are at 0."""
-    hand = {"open": robot.hand_open, "closed": robot.hand_closed}
+    """The start configuration (nq,)."""
+    leads = robot.hand.leads
+    hand = {"open": robot.hand_open[leads], "closed": robot.hand_closed[leads]}
     q = np.zeros(robot.model.nq)
     q[robot.base.indices] = start.base
     q[robot.arm.indices] = _named(start.arm, robot.configurations)
-    q[robot.hand.indices] = _named(start.hand, hand)
-    return read_only(q)
+    q[robot.hand.indices[leads]] = _named(start.hand, hand)
+    return read_only(robot.with_followers(q))
 
 
 def _named(value: str | tuple[float, ...], known: dict[str, Array]) -> Array:

@@ -50,7 +50,7 @@ class SceneFile:
         robot = self.robot
         yield "scene", self.document.path
         yield "robot", robot.path
-        yield from _urdf_files("robot urdf", robot.urdf, robot.package_dirs)
+        yield from robot.files.items()
         sections = [*self.section.obstacles.items(), *self.section.objects.items()]
         for name, section in sections:
             if section.mesh is not None:
@@ -124,10 +124,10 @@ def _robot(
 
 def _facts(robot: RobotDescription) -> RobotFacts:
     return RobotFacts(
-        urdf=read_urdf(robot.urdf, robot.package_dirs),
+        urdf=robot.facts,
         base=robot.base_joints,
         arm=robot.arm_joints,
-        hand=robot.hand_joints,
+        hand=robot.hand_leaders,
         configurations=robot.configurations,
     )
 

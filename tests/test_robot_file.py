@@ -26,7 +26,7 @@ def test_a_shipped_robot_is_described(name: str, tmp_path: Path) -> None:
     description = load_robot_description(path)
     assert description.name == name
     assert description.description
-    assert description.urdf.is_file()
+    assert all(file.is_file() for file in description.files.values())
     assert set(description.acceleration) == {
         *description.base_joints,
         *description.arm_joints,
@@ -37,7 +37,8 @@ def test_a_shipped_robot_is_described(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("good", "bad", "message"),
     [
-        ("type: xy", "type: planar", "base.type: unknown name 'planar'; known: xy"),
+        ("type: xy", "type: plane", "base.type: unknown name 'plane'; did you mean"),
+        ("type: xy", "type: planar", "base: a base of type planar has 3 joints"),
         ("joint3, joint4", "jiont3, joint4", "arm.joints[2]: unknown joint 'jiont3'"),
         ("tool: tool", "tool: tol", "tool: unknown link 'tol'; did you mean 'tool'?"),
         ("radius: 0.28", "radius: -1", "base.radius: must be greater than 0"),

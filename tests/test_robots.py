@@ -11,9 +11,11 @@ import pytest
 
 from benchmarks.score_scales import score_scales
 from mmplan.assets import robot_names, robots_folder
+from mmplan.kinematics import joint_placements
 from mmplan.robot import Robot
 from mmplan.robot_build import build_robot
 from mmplan.robot_file import RobotDescription, load_robot_description
+from mmplan.robot_measures import base_radius, reach
 from mmplan.shapes import Array
 
 ROBOTS = robot_names()
@@ -30,9 +32,15 @@ def loaded(name: str) -> Robot:
 
 
 def draw(robot: Robot, n: int, seed: int) -> Array:
-    """Random configurations (n, nq) within limits."""
-    lower, upper = robot.model.lowerPositionLimit, robot.model.upperPositionLimit
-    return np.random.default_rng(seed).uniform(lower, upper, (n, robot.model.nq))
+    """Random configurations (n, nq) within limits, the base near the origin."""
+    lower, upper = np.empty((2, robot.model.nq))
+    for group in (robot.base, robot.arm, robot.hand):
+        lower[group.indices] = np.where(group.wraps, -np.pi, group.lower)
+        upper[group.indices] = np.where(group.wraps, np.pi, group.upper)
+    lower[robot.base.indices] = np.maximum(lower[robot.base.indices], -3.0)
+    upper[robot.base.indices] = np.minimum(upper[robot.base.indices], 3.0)
+    rng = np.random.default_rng(seed)
+    return robot.with_followers(rng.uniform(lower, upper, (n, robot.model.nq)))
 
 
 def test_the_papers_robot_is_shipped() -> None:
@@ -40,13 +48,16 @@ def test_the_papers_robot_is_shipped() -> None:
 
 
 @pytest.mark.parametrize("name", ROBOTS)
-def test_groups_cover_all_joints_in_order(name: str) -> None:
+def test_groups_cover_all_joints(name: str) -> None:
     robot = loaded(name)
     groups = (robot.base, robot.arm, robot.hand)
     indices = np.concatenate([group.indices for group in groups])
-    np.testing.assert_array_equal(indices, np.arange(robot.model.nq))
-    assert [n for g in groups for n in g.names] == list(robot.model.names)[1:]
+    np.testing.assert_array_equal(np.sort(indices), np.arange(robot.model.nq))
+    assert robot.model.nq == robot.model.nv
     for group in groups:
+        names = [robot.model.names[int(i) + 1] for i in group.indices]
+        assert names == list(group.names)
+        assert np.all(np.isfinite(group.lower) != group.wraps)
         assert np.all(group.lower < group.upper)
         assert np.all(group.velocity > 0)
         assert np.all(group.acceleration > 0)
@@ -76,6 +87,7 @@ def test_pairs_said_never_to_meet_never_meet(name: str) -> None:
         for pair in described(name).disabled_pairs
         if pair[2].startswith("never")
     }
+    assert never
     geometry = robot.geometry.copy()
     geometry.removeAllCollisionPairs()
     bodies = list(enumerate(geometry.geometryObjects))
@@ -117,78 +129,111 @@ def test_a_self_collision_is_seen(name: str) -> None:
     assert 0 < sum(hits) < len(hits)
 
 
-@pytest.mark.parametrize("name", ROBOTS)
-def test_collision_bodies_enclose_the_joints(name: str) -> None:
+def test_bodies_of_the_papers_robot_enclose_its_joints() -> None:
     """The axis of each arm joint passes through a body on either side of it."""
-    robot = loaded(name)
-    data = robot.model.createData()
+    robot = loaded("puma_mobile")
     q = robot.q_neutral.copy()
     q[robot.arm.indices] = robot.configurations["home"]
-    geometry_data = robot.geometry.createData()
-    pin.updateGeometryPlacements(robot.model, data, robot.geometry, geometry_data, q)
+    data = robot.model.createData()
+    bodies = placed_bodies(robot, q)
+    pin.forwardKinematics(robot.model, data, q)
     line = coal.Capsule(1e-4, 4.0)
     for joint in (robot.model.getJointId(n) for n in robot.arm.names):
-        T_world_joint = data.oMi[joint]
         for side in (joint, robot.model.parents[joint]):
             gaps = [
-                coal.distance(
-                    line,
-                    _transform(T_world_joint),
-                    body.geometry,
-                    _transform(T_world_body),
-                    coal.DistanceRequest(),
-                    coal.DistanceResult(),
-                )
-                for body, T_world_body in zip(
-                    robot.geometry.geometryObjects, geometry_data.oMg, strict=True
-                )
+                gap(line, data.oMi[joint], body.geometry, T)[0]
+                for body, T in bodies
                 if body.parentJoint == side
             ]
             assert min(gaps) < 0, robot.model.names[joint]
 
 
-def _transform(T: pin.SE3) -> coal.Transform3s:
-    return coal.Transform3s(T.rotation, T.translation)
+def placed_bodies(robot: Robot, q: Array) -> list[tuple[pin.GeometryObject, pin.SE3]]:
+    """The collision bodies with their poses in the world at a configuration."""
+    data, geometry = robot.model.createData(), robot.geometry.createData()
+    pin.updateGeometryPlacements(robot.model, data, robot.geometry, geometry, q)
+    return list(zip(robot.geometry.geometryObjects, geometry.oMg, strict=True))
+
+
+def gap(
+    first: coal.CollisionGeometry,
+    T_world_first: pin.SE3,
+    second: coal.CollisionGeometry,
+    T_world_second: pin.SE3,
+) -> tuple[float, Array]:
+    """The distance of two bodies and the point of the second nearest to the first."""
+    result = coal.DistanceResult()
+    poses = [
+        coal.Transform3s(T.rotation, T.translation)
+        for T in (T_world_first, T_world_second)
+    ]
+    request = coal.DistanceRequest()
+    distance = coal.distance(first, poses[0], second, poses[1], request, result)
+    return float(distance), np.array(result.getNearestPoint2())
 
 
 @pytest.mark.parametrize("name", ROBOTS)
-def test_the_tool_frame_follows_the_convention(name: str) -> None:
-    """z points out of the hand, y is the line on which the fingers close."""
+def test_the_fingers_meet_at_the_tool_frame_along_y(name: str) -> None:
     robot = loaded(name)
+    sides = {state: _finger_sides(robot, state) for state in ("open", "closed")}
+    for gaps, points in sides.values():
+        assert min(points[:, 1]) < 0 < max(points[:, 1]) or max(gaps) < 3e-3
+    gaps, points = sides["open"]
+    nearest = points[np.argsort(gaps)[:2]]
+    assert nearest[0, 1] * nearest[1, 1] < 0, "a finger on either side"
+    np.testing.assert_allclose(nearest[:, [0, 2]], 0, atol=5e-3)
+    np.testing.assert_allclose(nearest[0, 1], -nearest[1, 1], atol=2e-3)
+    assert min(gaps) > 0.02
+    assert sorted(sides["closed"][0])[1] < 3e-3
+
+
+def _finger_sides(robot: Robot, state: str) -> tuple[Array, Array]:
+    """Of each finger's bodies the gap to the tool's origin and the nearest point."""
     q = robot.q_neutral.copy()
-    in_tool = {}
-    for state, hand in (("open", robot.hand_open), ("closed", robot.hand_closed)):
-        q[robot.hand.indices] = hand
-        data, geometry = robot.model.createData(), robot.geometry.createData()
-        pin.updateGeometryPlacements(robot.model, data, robot.geometry, geometry, q)
-        pin.updateFramePlacements(robot.model, data)
-        T_tool_world = data.oMf[robot.tool_frame].inverse()
-        in_tool[state] = np.array(
-            [(T_tool_world * T).translation for T in geometry.oMg]
-        )
-    kinds = [robot.kind_of(body) for body in robot.geometry.geometryObjects]
-    fingers = np.array([kind == "finger" for kind in kinds])
-    hand_joint = np.array(
-        [b.parentJoint == robot.tool_joint for b in robot.geometry.geometryObjects]
-    )
-    closing = (in_tool["closed"] - in_tool["open"])[fingers]
-    np.testing.assert_allclose(closing[:, [0, 2]], 0, atol=1e-12)
-    assert np.all(closing[:, 1] * in_tool["open"][fingers, 1] < 0)
-    np.testing.assert_allclose(in_tool["open"][fingers].mean(axis=0)[:2], 0, atol=1e-12)
-    assert np.all(in_tool["open"][hand_joint & ~fingers, 2] < -0.03)
+    q[robot.hand.indices] = robot.hand_open if state == "open" else robot.hand_closed
+    T_world_tool = pin.SE3(robot.tool_pose(q))
+    origin = coal.Sphere(1e-6)
+    found = [
+        gap(origin, T_world_tool, body.geometry, T)
+        for body, T in placed_bodies(robot, q)
+        if robot.kind_of(body) == "finger"
+    ]
+    points = np.array([T_world_tool.actInv(point) for _, point in found])
+    return np.array([distance for distance, _ in found]), points
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_the_hand_is_behind_the_tool_frame(name: str) -> None:
+    """z of the tool frame points out of the hand."""
+    robot = loaded(name)
+    q = robot.q_neutral
+    T_world_tool = pin.SE3(robot.tool_pose(q))
+    behind = [
+        T_world_tool.actInv(T.act(np.ravel(body.geometry.computeCOM())))[2]
+        for body, T in placed_bodies(robot, q)
+        if robot.kind_of(body) == "finger" or body.parentJoint == robot.tool_joint
+    ]
+    assert max(behind) < 1e-3
+    assert min(behind) < -0.05
 
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_reach_is_that_of_the_stretched_arm(name: str) -> None:
     robot = loaded(name)
-    base = robot.model.getJointId(robot.base.names[-1])
-    data = robot.model.createData()
-    farthest = 0.0
-    for q in draw(robot, 20_000, seed=3):
-        pin.framesForwardKinematics(robot.model, data, q)
-        T_base_tool = data.oMi[base].inverse() * data.oMf[robot.tool_frame]
-        farthest = max(farthest, np.hypot(*T_base_tool.translation[:2]))
-    assert 0.9 * robot.reach < farthest <= robot.reach + 1e-3
+    q = draw(robot, 20_000, seed=3)
+    poses = joint_placements(robot.model, q)
+    T_world_tool = poses[:, robot.tool_joint] @ robot.T_joint_tool
+    offset = T_world_tool[:, :2, 3] - poses[:, robot.base_joint, :2, 3]
+    farthest = np.hypot(*offset.T).max()
+    assert 0.85 * robot.reach < farthest <= robot.reach + 1e-3
+    computed = reach(robot.model, robot.arm, robot.base_joint, robot.tool_frame)
+    assert computed == pytest.approx(robot.reach, abs=2e-3)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_the_bases_radius_encloses_it(name: str) -> None:
+    robot = loaded(name)
+    assert base_radius(robot.geometry, robot.base_joint) <= robot.base_radius + 1e-2
 
 
 @pytest.mark.parametrize("name", ROBOTS)

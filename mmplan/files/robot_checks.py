@@ -1,14 +1,35 @@
-"""Faults of a robot.yaml that only show against its URDF, by key path."""
+"""Faults of a robot.yaml that only show against its URDFs, by key path."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 
 from mmplan.files.document import Document, Fault, KeyPath
 from mmplan.files.suggestions import unknown
-from mmplan.files.urdf import Urdf
+from mmplan.files.urdf import Urdf, UrdfJoint
+from mmplan.files.urdf_composition import BASE_JOINTS
 
 GROUPS = ("base", "arm", "hand")
+
+
+def joined_facts(document: Document, parts: Sequence[Urdf]) -> Urdf:
+    """All joints and links that a robot.yaml may name, with the limits that it sets.
+
+    They are those of its URDFs and the joints of a base that is added.
+    """
+    joints = {name: joint for urdf in parts for name, joint in urdf.joints.items()}
+    if not document.get("base", "joints"):
+        names = BASE_JOINTS.get(str(document.get("base", "type")), ())
+        joints |= {n: UrdfJoint(n, -math.inf, math.inf) for n in names}
+    for name in document.keys("position"):
+        lower, upper = _numbers(document, ("position", name)) or (0.0, 0.0)
+        if name in joints and lower < upper:
+            joints[name] = replace(joints[name], lower=lower, upper=upper)
+    links = [link for urdf in parts for link in urdf.links]
+    bodies = [link for urdf in parts for link in urdf.bodies]
+    return Urdf(joints, tuple(links), tuple(bodies), {})
 
 
 def robot_faults(document: Document, urdf: Urdf) -> Iterator[Fault]:
@@ -18,12 +39,25 @@ def robot_faults(document: Document, urdf: Urdf) -> Iterator[Fault]:
     """
     for group in GROUPS:
         yield from _unknown_joints(document, (group, "joints"), urdf)
-    yield from _unknown_accelerations(document, urdf)
+    yield from _follower_faults(document, urdf)
+    for limits in ("parked", "position", "velocity", "acceleration"):
+        yield from _unknown_keys(document, limits, "joint", urdf.joints)
+    yield from _unknown_keys(document, "collision", "link", urdf.links)
+    yield from _missing_limits(document, urdf)
     yield from _unknown_links(document, urdf)
     yield from position_faults(document, ("hand", "open"), "hand", urdf)
     yield from position_faults(document, ("hand", "closed"), "hand", urdf)
     for name in document.keys("configurations"):
         yield from position_faults(document, ("configurations", name), "arm", urdf)
+    yield from _parked_faults(document, urdf)
+
+
+def grouped_joints(document: Document) -> list[str]:
+    """The joints of the three groups; those of the base also where they are added."""
+    base = _texts(document, ("base", "joints"))
+    added = BASE_JOINTS.get(str(document.get("base", "type")), ())
+    others = (_texts(document, (group, "joints")) for group in GROUPS[1:])
+    return [*(base or added), *(name for names in others for name in names)]
 
 
 def _unknown_joints(document: Document, path: KeyPath, urdf: Urdf) -> Iterator[Fault]:
@@ -32,29 +66,81 @@ def _unknown_joints(document: Document, path: KeyPath, urdf: Urdf) -> Iterator[F
             yield Fault((*path, i), unknown("joint", name, urdf.joints))
 
 
-def _unknown_accelerations(document: Document, urdf: Urdf) -> Iterator[Fault]:
-    given = document.keys("acceleration")
-    for name in given:
-        if name not in urdf.joints:
-            path = ("acceleration", name)
-            yield Fault(path, unknown("joint", name, urdf.joints), at_key=True)
-    used = [n for g in GROUPS for n in _texts(document, (g, "joints"))]
-    missing = [n for n in used if n in urdf.joints and n not in given]
-    if given and missing:
+def _follower_faults(document: Document, urdf: Urdf) -> Iterator[Fault]:
+    """Joints that mimic others are in no group: they follow by themselves."""
+    for group in GROUPS:
+        for i, name in enumerate(_texts(document, (group, "joints"))):
+            joint = urdf.joints.get(name)
+            if joint is not None and joint.mimic is not None:
+                message = f"'{name}' mimics '{joint.mimic.leader}'; name only that"
+                yield Fault((group, "joints", i), message)
+    leaders = {
+        *_texts(document, ("base", "joints")),
+        *_texts(document, ("arm", "joints")),
+    }
+    for joint in urdf.joints.values():
+        if joint.mimic is not None and joint.mimic.leader in leaders:
+            message = f"'{joint.name}' mimics '{joint.mimic.leader}' of base or arm"
+            yield Fault(
+                ("urdf",), f"{message}; only joints of the hand may be mimicked"
+            )
+
+
+def _unknown_keys(
+    document: Document, section: str, kind: str, known: Collection[str]
+) -> Iterator[Fault]:
+    for name in document.keys(section):
+        if name not in known:
+            yield Fault((section, name), unknown(kind, name, known), at_key=True)
+
+
+def _missing_limits(document: Document, urdf: Urdf) -> Iterator[Fault]:
+    """Joints without an acceleration limit, added ones without one of velocity."""
+    used = [name for name in grouped_joints(document) if name in urdf.joints]
+    yield from _first_missing(document, "acceleration", used)
+    if not document.get("base", "joints"):
+        names = BASE_JOINTS.get(str(document.get("base", "type")), ())
+        yield from _first_missing(document, "velocity", names)
+
+
+def _first_missing(
+    document: Document, section: str, joints: Sequence[str]
+) -> Iterator[Fault]:
+    given = document.keys(section)
+    missing = [name for name in joints if name not in given]
+    if missing and (given or section == "velocity"):
         message = f"no limit for joint '{missing[0]}'"
-        yield Fault(("acceleration",), message, at_key=True)
+        at = (section,) if given else ()
+        yield Fault(at, message if given else f"{section}: {message}", at_key=True)
 
 
 def _unknown_links(document: Document, urdf: Urdf) -> Iterator[Fault]:
-    tool = document.get("tool")
-    if isinstance(tool, str) and tool not in urdf.links:
-        yield Fault(("tool",), unknown("link", tool, urdf.links))
+    for path in (("tool",), ("tool", "link"), ("hand", "link")):
+        link = document.get(*path)
+        if isinstance(link, str) and link not in urdf.links:
+            yield Fault(path, unknown("link", link, urdf.links))
     pairs = document.get("disabled_pairs")
+    links = (*urdf.links, *_added_links(document))
     for i in range(len(pairs) if isinstance(pairs, tuple) else 0):
         for k, link in enumerate(_texts(document, ("disabled_pairs", i))[:2]):
-            if link not in urdf.links:
-                message = unknown("link", link, urdf.links)
-                yield Fault(("disabled_pairs", i, k), message)
+            if link not in links:
+                yield Fault(("disabled_pairs", i, k), unknown("link", link, links))
+
+
+def _added_links(document: Document) -> tuple[str, ...]:
+    return ("mobile_base",) if document.get("base", "bodies") else ()
+
+
+def _parked_faults(document: Document, urdf: Urdf) -> Iterator[Fault]:
+    grouped = grouped_joints(document)
+    for name in document.keys("parked"):
+        path = ("parked", name)
+        if name in grouped:
+            message = f"'{name}' belongs to a group and moves; it cannot be parked"
+            yield Fault(path, message, at_key=True)
+        elif name in urdf.joints:
+            for fault in joint_value_faults((document.get(*path),), [name], urdf):
+                yield fault._replace(path=path)
 
 
 def position_faults(
@@ -83,6 +169,13 @@ def joint_value_faults(
         if isinstance(value, int | float) and not joint.lower <= value <= joint.upper:
             limits = f"{joint.lower:g} to {joint.upper:g}"
             yield Fault((i,), f"{value:g} is outside the limits of '{name}', {limits}")
+
+
+def _numbers(document: Document, path: KeyPath) -> tuple[float, float] | None:
+    value = document.get(*path)
+    items = value if isinstance(value, tuple) else ()
+    numbers = [v for v in items if isinstance(v, int | float)]
+    return (numbers[0], numbers[1]) if len(items) == len(numbers) == 2 else None
 
 
 def _texts(document: Document, path: KeyPath) -> list[str]:

@@ -1,84 +1,31 @@
-"""The robot format: what may stand in a robot.yaml, section by section."""
+"""The robot format: what may stand in a robot.yaml."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated
 
-from pydantic import ConfigDict, Discriminator, Field, Tag
+from pydantic import Field
 
+from mmplan.files.robot_parts import (
+    ArmSection,
+    BaseSection,
+    Collision,
+    HandSection,
+    IkSection,
+    RobotFile,
+    Tool,
+)
 from mmplan.files.section import (
-    FileName,
+    JointInterval,
     Line,
     Name,
     Positive,
     Section,
     Size,
-    messages,
     version,
 )
 
 ROBOT_VERSION = 1
-
-
-class ExampleSection(Section):
-    """A robot of the example-robot-data package."""
-
-    example_robot_data: str
-    """Path of the URDF inside the package's robots folder."""
-
-
-def _urdf_form(value: object) -> str | None:
-    if isinstance(value, str):
-        return "file"
-    return "example" if isinstance(value, dict) else None
-
-
-UrdfName: TypeAlias = Annotated[
-    Annotated[FileName, Tag("file")] | Annotated[ExampleSection, Tag("example")],
-    Discriminator(
-        _urdf_form, **messages("expected a file name or {example_robot_data: ...}")
-    ),
-]
-Joints: TypeAlias = Annotated[tuple[str, ...], Field(min_length=1)]
-
-
-class BaseSection(Section):
-    """The mobile base."""
-
-    type: Literal["xy"]
-    """xy: moves along x and y and does not turn."""
-    joints: tuple[str, str]
-    """The URDF's joints along x and along y."""
-    radius: Size
-    """Radius of the circle about the base's centre that encloses it, m."""
-
-
-class ArmSection(Section):
-    """The arm."""
-
-    joints: Joints
-    """The URDF's joints from the shoulder to the wrist."""
-
-
-class HandSection(Section):
-    """The hand."""
-
-    joints: Joints
-    """The URDF's joints of the fingers."""
-    open: tuple[float, ...]
-    """Position of each joint with the hand open, m or rad."""
-    closed: tuple[float, ...]
-    """Position of each joint with the hand closed on nothing, m or rad."""
-
-
-class IkSection(Section):
-    """Inverse kinematics: the solver, and its settings as numbers by name."""
-
-    model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, float]
-
-    solver: str
-    """Name of the solver."""
 
 
 class ScalesSection(Section):
@@ -103,25 +50,35 @@ class RobotSection(Section):
     """Name of the robot."""
     description: Line = ""
     """One line that says what the robot is."""
-    urdf: UrdfName
+    urdf: RobotFile
     """The URDF file, beside the robot.yaml or in example-robot-data."""
+    srdf: RobotFile | None = None
+    """An SRDF file, for its disabled pairs."""
     base: BaseSection
     """The mobile base."""
     arm: ArmSection
     """The arm."""
     hand: HandSection
     """The hand."""
-    tool: str
-    """Link of the URDF at the tool frame: z approaches, the fingers close along y."""
-    reach: Size
+    tool: Tool
+    """The tool frame: a link, or a pose in one; z approaches, y is where it closes."""
+    reach: Size | None = None
     """Horizontal distance from the base's centre to the tool, arm stretched, m."""
     ik: IkSection
     """Inverse kinematics of the arm."""
+    parked: dict[str, float] = Field(default_factory=dict)
+    """Where joints of no group are held, m or rad; others at 0, or nearest to it."""
+    position: dict[str, JointInterval] = Field(default_factory=dict)
+    """Position limits of joints instead of those of the URDF: [lower, upper]."""
+    velocity: dict[str, Positive] = Field(default_factory=dict)
+    """Velocity limits of joints instead of those of the URDF, m/s or rad/s."""
     acceleration: dict[str, Positive]
     """Acceleration limit of every joint, m/s^2 or rad/s^2."""
     configurations: dict[Name, tuple[float, ...]] = Field(default_factory=dict)
     """Configurations of the arm by names of your choice: one number a joint, rad."""
     score_scales: ScalesSection
     """Constants that bring the score's terms to one scale."""
+    collision: dict[str, Collision] = Field(default_factory=dict)
+    """Collision bodies of links: hull (of each mesh), mesh, decomposed, or bodies."""
     disabled_pairs: tuple[tuple[str, str, str], ...] = ()
     """Pairs of links that are not checked for collision: [link, link, reason]."""

@@ -155,3 +155,4 @@ Positive: TypeAlias = Annotated[
 ]
 FileName: TypeAlias = Annotated[str, AfterValidator(_existing_file)]
 Interval: TypeAlias = Annotated[tuple[Metres, Metres], AfterValidator(_interval)]
+JointInterval: TypeAlias = Annotated[tuple[float, float], AfterValidator(_interval)]

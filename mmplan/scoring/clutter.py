@@ -87,7 +87,7 @@ class LinkWeights:
                 self._joints.append(int(body.parentJoint))
             bodies.setdefault(link, []).append(_corners(body))
         self._middles = np.array([_middle(b) for b in bodies.values()])  # (links, 3)
-        self._base_joint = robot.model.getJointId(robot.base.names[-1])
+        self._base_joint = robot.base_joint
 
     def __call__(self, q: Array) -> Array:
         """The weights w_l in 1/m at q (n, nq), (n, links)."""
