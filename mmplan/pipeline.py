@@ -13,7 +13,13 @@ from mmplan.exceptions import NoPlanError, VerificationError
 from mmplan.failure import Attempt, failure_report
 from mmplan.grasps import GraspFamily, Mixture
 from mmplan.motion import Blocked, TaskMotion
-from mmplan.optimizers import OPTIMIZERS, Optimization, optimize, search_space
+from mmplan.optimizers import (
+    OPTIMIZERS,
+    Optimization,
+    Optimizer,
+    optimize,
+    search_space,
+)
 from mmplan.plan import Plan, Segment, TaskEnd, TaskPlan
 from mmplan.plan_assembly import assemble_plan
 from mmplan.problem import Object, Problem, Task
@@ -42,11 +48,10 @@ def solve(problem: Problem, *, seed: int = 0, progress: Progress | None = None) 
     report: Progress = progress or _ignore
     rest, plans = problem, []
     for number, rng in enumerate(task_generators(problem, seed)):
-        plan = _solve_task(
-            replace(rest, tasks=(problem.tasks[number],)), number, seed, rng, report
-        )
+        one = replace(rest, tasks=(problem.tasks[number],))
+        plan = _solve_task(one, number, seed, rng, report)
         plans.append(plan)
-        rest = _after(rest, plan)
+        rest = after_task(one, plan.tasks[0])
     if len(plans) == 1:
         return plans[0]
     whole = assemble_plan(problem, [plan.tasks[0] for plan in plans], seed)
@@ -148,16 +153,20 @@ def _lines_in_the_way(task: Task, attempts: list[Attempt]) -> bool:
 def _optimize(
     score: ScoreFunction, rng: np.random.Generator, report: Progress
 ) -> Optimization:
-    problem = score.problem
-    settings = problem.optimizer
-    optimizer = OPTIMIZERS[settings.name](search_space(score), settings, rng)
+    evaluations = score.problem.optimizer.evaluations
     return optimize(
         score,
-        optimizer,
-        settings.evaluations,
-        problem.planner.candidates,
-        lambda spent: report("optimization", spent, settings.evaluations),
+        optimizer_of(score, rng),
+        evaluations,
+        score.problem.planner.candidates,
+        lambda spent: report("optimization", spent, evaluations),
     )
+
+
+def optimizer_of(score: ScoreFunction, rng: np.random.Generator) -> Optimizer:
+    """The optimizer that a problem's settings name, at its start."""
+    settings = score.problem.optimizer
+    return OPTIMIZERS[settings.name](search_space(score), settings, rng)
 
 
 def grasp_family(item: Object) -> tuple[tuple[str, ...], GraspFamily]:
@@ -192,13 +201,13 @@ def _task_plan(
     )
 
 
-def _after(problem: Problem, plan: Plan) -> Problem:
-    """The problem as a plan for its only task leaves it."""
-    task, q_end = plan.tasks[0], plan.tasks[0].segments[-1].positions[-1]
+def after_task(problem: Problem, task: TaskPlan) -> Problem:
+    """A problem with one task as the plan of that task leaves it."""
     objects = tuple(
         replace(o, T_world_object=problem.tasks[0].T_world_goal)
         if o.name == task.object
         else o
         for o in problem.objects
     )
+    q_end = task.segments[-1].positions[-1]
     return replace(problem, q_start=q_end, objects=objects)

@@ -94,19 +94,8 @@ def _fixture_bodies(
     fixture: Fixture,
 ) -> list[tuple[str, coal.CollisionGeometry, Array]]:
     """Link name, geometry and pose in the fixture's frame, at its configuration."""
-    try:
-        model = pin.buildModelFromUrdf(str(fixture.path))
-        geometry = pin.buildGeomFromUrdf(
-            model,
-            str(fixture.path),
-            pin.GeometryType.COLLISION,
-            package_dirs=[str(fixture.path.parent)],
-        )
-    except (RuntimeError, ValueError) as error:
-        raise InputError(
-            f"{fixture.path}: this URDF cannot be read: {error}"
-        ) from error
-    q = _fixture_configuration(model, fixture)
+    model, geometry = fixture_model(fixture, pin.GeometryType.COLLISION)
+    q = fixture_configuration(model, fixture)
     data, geometry_data = model.createData(), geometry.createData()
     pin.updateGeometryPlacements(model, data, geometry, geometry_data, q)
     return [
@@ -116,7 +105,32 @@ def _fixture_bodies(
     ]
 
 
-def _fixture_configuration(model: pin.Model, fixture: Fixture) -> Array:
+def fixture_model(
+    fixture: Fixture, kind: pin.GeometryType
+) -> tuple[pin.Model, pin.GeometryModel]:
+    """The joints of a fixture and its bodies of one kind, visual or collision.
+
+    Raises:
+        InputError: Its URDF cannot be read.
+    """
+    try:
+        model = pin.buildModelFromUrdf(str(fixture.path))
+        folders = [str(fixture.path.parent)]
+        return model, pin.buildGeomFromUrdf(
+            model, str(fixture.path), kind, package_dirs=folders
+        )
+    except (RuntimeError, ValueError) as error:
+        raise InputError(
+            f"{fixture.path}: this URDF cannot be read: {error}"
+        ) from error
+
+
+def fixture_configuration(model: pin.Model, fixture: Fixture) -> Array:
+    """The joints (nq,) of a fixture as Pinocchio keeps them.
+
+    Raises:
+        InputError: The fixture has no joint of a name that is given.
+    """
     q: Array = np.clip(
         pin.neutral(model), model.lowerPositionLimit, model.upperPositionLimit
     )
