@@ -23,8 +23,9 @@ from mmplan.shapes import Array
 # this (rad or m); other solutions are isolated.
 _SAME_MOTION = 0.1
 _SAME_POINT = 1e-4
-# The second attempt at poses that samples do not solve: starts, steps, patience.
-_RESCUE = (6, 25, 4)
+# The second attempt at poses that samples do not solve is short, as most of these are
+# out of reach: starts, size of their table, steps and patience.
+_RESCUE = (4, 1024, 25, 3)
 
 
 class _Held(NamedTuple):
@@ -121,10 +122,7 @@ def _redundant(
 ) -> Redundant:
     joints = [*range(held.front), *range(held.front + 6, len(chain))]
     values = _samples(chain.part(joints), settings)
-    seeds, steps, patience = _RESCUE
-    rescue = Numeric(
-        chain, seeds, settings.table, steps, patience, _SAME_MOTION, "a second attempt"
-    )
+    rescue = Numeric(chain, *_RESCUE, _SAME_MOTION, "a second attempt")
     names = ", ".join(chain.names[i] for i in joints)
     return Redundant(
         chain=chain,

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -13,11 +12,14 @@ import pinocchio as pin
 
 from mmplan.exceptions import InputError
 from mmplan.ik.poses import Poses
+from mmplan.ik.rotation import along, cross, rotate
 from mmplan.kinematics import motion_axis
 from mmplan.shapes import Array, read_only
 
 # Limits beyond this (rad) are those of a joint that turns without end.
 _ENDLESS = 1e6
+# Components of unit vectors below this are rounding.
+_ROUNDING = 5e-11
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,51 +70,33 @@ class Chain:
             if self.prismatic[i]:
                 J[:3, i] = z
             else:
-                J[:3, i] = np.cross(z, poses.p - origin, axis=0)
+                J[:3, i] = cross(z, poses.p - origin)
                 J[3:, i] = z
         return poses, J
 
     def _run(self, q: Array) -> tuple[Poses, list[Array], list[Array]]:
         """The tool's poses, and each joint's directions and origins (3, m)."""
-        m = q.shape[1]
-        R = np.broadcast_to(np.eye(3)[:, :, None], (3, 3, m))
-        p = np.zeros((3, m))
+        R = np.eye(3)[:, :, None]
+        p = np.zeros((3, q.shape[1]))
         directions, origins = [], []
-        for i, link in enumerate(self._links):
-            moved = (link @ R.reshape(3, 3 * m)).reshape(4, 3, m)
-            R, p = moved[:3], p + moved[3]
-            if i == len(self):
-                break
-            directions.append(R[2])
+        before = np.zeros(3)
+        for i, (axis, point) in enumerate(zip(self.axes, self.points, strict=True)):
+            p = p + along(point - before, R)
+            before = point
+            directions.append(along(axis, R))
             origins.append(p)
             if self.prismatic[i]:
-                p = p + q[i] * R[2]
+                p = p + q[i] * directions[i]
             else:
-                cosine, sine = np.cos(q[i]), np.sin(q[i])
-                R = np.stack(
-                    [cosine * R[0] + sine * R[1], cosine * R[1] - sine * R[0], R[2]]
-                )
-        return Poses(R, p), directions, origins
+                R = rotate(-axis, q[i], R)
+        p = p + along(self.T_home[:3, 3] - before, R)
+        home = self.T_home[:3, :3].T @ R.reshape(3, -1)
+        return Poses(home.reshape(R.shape), p), directions, origins
 
     @cached_property
     def T_tool_home(self) -> Array:
         """The inverse of `T_home`."""
         return read_only(np.linalg.inv(self.T_home))
-
-    @cached_property
-    def _links(self) -> list[Array]:
-        """[rotation | offset] transposed (4, 3) from each joint's frame to the next.
-
-        A joint's frame stands on its axis, with z along it.
-        """
-        frames = [np.eye(4)]
-        for axis, point in zip(self.axes, self.points, strict=True):
-            frame = np.eye(4)
-            frame[:3, :3] = _frame_along(axis)
-            frame[:3, 3] = point
-            frames.append(frame)
-        frames.append(self.T_home)
-        return [(np.linalg.inv(a) @ b)[:3].T.copy() for a, b in pairwise(frames)]
 
 
 def arm_chain(model: pin.Model, joints: Sequence[str], tool_frame: int) -> Chain:
@@ -132,7 +116,7 @@ def arm_chain(model: pin.Model, joints: Sequence[str], tool_frame: int) -> Chain
         linear, angular = np.split(motion_axis(model, i), 2)
         slides = not angular.any()
         axis = linear if slides else angular
-        axes.append(placement.rotation @ (axis / np.linalg.norm(axis)))
+        axes.append(_clean(placement.rotation @ axis))
         points.append(placement.translation)
         prismatic.append(slides)
         limits.append(_limits(model, i))
@@ -175,9 +159,8 @@ def _limits(model: pin.Model, joint: int) -> tuple[float, float]:
     return (-np.inf, np.inf) if endless else (lower, upper)
 
 
-def _frame_along(axis: Array) -> Array:
-    """A rotation (3, 3) whose z is the axis."""
-    helper = np.eye(3)[np.argmin(np.abs(axis))]
-    x = np.cross(helper, axis)
-    x /= np.linalg.norm(x)
-    return np.stack([x, np.cross(axis, x), axis], axis=1)
+def _clean(axis: Array) -> Array:
+    """The unit vector along an axis, without what rounding added to it."""
+    cleaned = np.where(np.abs(axis) < _ROUNDING, 0.0, axis)
+    unit: Array = cleaned / np.linalg.norm(cleaned)
+    return unit

@@ -12,13 +12,8 @@ import numpy as np
 
 from mmplan.ik.branches import Candidates, Pruning
 from mmplan.ik.poses import Poses
-from mmplan.ik.subproblems import (
-    dot,
-    rotate,
-    subproblem_1,
-    subproblem_3,
-    subproblem_4,
-)
+from mmplan.ik.rotation import along, dot, rotate
+from mmplan.ik.subproblems import subproblem_1, subproblem_3, subproblem_4
 from mmplan.ik.wrist import Wrist
 from mmplan.shapes import Array
 
@@ -40,9 +35,9 @@ class ParallelAxes:
         """The joints (6, m) whose motion from 0 moves the tool as given."""
         R, p = displacement
         p1, centre = self.points[0][:, None], self.points[5][:, None]
-        from_1 = np.tensordot(self.points[5], R, 1) + p - p1
+        from_1 = along(self.points[5], R) + p - p1
         normal = self.axes[1][:, None]
-        height = self.axes[1] @ (centre - p1)
+        height = along(self.axes[1], centre - p1)
         first = subproblem_4(-self.axes[0], from_1, normal, height, self.slack)
         case, q1 = pruning.split(0, first)
         images = rotate(-self.axes[0], q1, self.wrist.images(R)[:, :, case])

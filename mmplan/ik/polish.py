@@ -12,13 +12,13 @@ import numpy as np
 from mmplan.ik.branches import Candidates
 from mmplan.ik.chain import Chain
 from mmplan.ik.poses import Poses
-from mmplan.ik.subproblems import dot
+from mmplan.ik.rotation import cross, dot
 from mmplan.shapes import Array
 
 # A pose missed by less (m and rad) is reached; steps go on until it is missed by less
 # than the second.
 REACHED = 1e-9
-_EXACT = 1e-11
+_EXACT = 1e-10
 _STEPS = 8
 # Solutions nearer to each other than this (rad or m) are one.
 _SAME = 1e-6
@@ -30,7 +30,7 @@ def misses(found: Poses, wanted: Poses) -> Array:
     In the base's axes; the angular part is axis times angle.
     """
     (x, y, z), (a, b, c) = found.R, wanted.R
-    sine2 = _cross(x, a) + _cross(y, b) + _cross(z, c)  # 2 sin(angle) axis
+    sine2 = cross(x, a) + cross(y, b) + cross(z, c)  # 2 sin(angle) axis
     cosine2 = dot(x, a) + dot(y, b) + dot(z, c) - 1.0  # 2 cos(angle)
     length = np.sqrt(dot(sine2, sine2))
     angle = np.arctan2(length, cosine2)
@@ -59,8 +59,7 @@ def polish(chain: Chain, candidates: Candidates, wanted: Poses) -> Candidates:
     """
     q = np.ascontiguousarray(candidates.q)
     target = wanted.take(candidates.pose)
-    miss = misses(chain.forward(q), target)
-    size = np.sqrt((miss**2).sum(axis=0))
+    size = _sizes(chain, q, target)
     rows = np.flatnonzero(size > _EXACT)
     moved = rows.size > 0
     for _ in range(_STEPS):
@@ -99,16 +98,11 @@ def distinct(chain: Chain, candidates: Candidates, apart: float) -> Candidates:
 
 
 def _sizes(chain: Chain, q: Array, wanted: Poses) -> Array:
-    miss = misses(chain.forward(q), wanted)
-    sizes: Array = np.sqrt((miss**2).sum(axis=0))
-    return sizes
-
-
-def _cross(a: Array, b: Array) -> Array:
-    return np.stack(
-        [
-            a[1] * b[2] - a[2] * b[1],
-            a[2] * b[0] - a[0] * b[2],
-            a[0] * b[1] - a[1] * b[0],
-        ]
+    """How far (m and rad, by the chord) configurations are from their poses, (m,)."""
+    found = chain.forward(q)
+    dR = (found.R - wanted.R).reshape(9, -1)
+    dp = found.p - wanted.p
+    sizes: Array = np.sqrt(
+        0.5 * np.einsum("im,im->m", dR, dR) + np.einsum("im,im->m", dp, dp)
     )
+    return sizes

@@ -15,10 +15,9 @@ import numpy as np
 
 from mmplan.ik.branches import Candidates, Index, Pruning
 from mmplan.ik.poses import Poses
+from mmplan.ik.rotation import along, dot, rotate
 from mmplan.ik.subproblems import (
     AnglePairs,
-    dot,
-    rotate,
     subproblem_1,
     subproblem_2,
     subproblem_3,
@@ -58,7 +57,7 @@ class SphericalWrist:
     def solve(self, displacement: Poses, pruning: Pruning) -> Candidates:
         """The joints (6, m) whose motion from 0 moves the tool as given."""
         R, p = displacement
-        centre = np.tensordot(self.shoulder.centre, R, 1) + p
+        centre = along(self.shoulder.centre, R) + p
         case, q = self.placing(self.shoulder, centre, pruning)
         images = self.wrist.images(R)[:, :, case]
         for axis, angle in zip(self.shoulder.axes, q, strict=True):
@@ -77,7 +76,7 @@ def place_parallel_23(
     axes, (p1, p2, p3) = shoulder.axes, shoulder.points[:, :, None]
     c, slack = shoulder.centre[:, None], shoulder.slack
     from_1 = centre - p1
-    height = axes[1] @ (c - p1)
+    height = along(axes[1], c - p1)
     first = subproblem_4(-axes[0], from_1, axes[1][:, None], height, slack)
     case, q1 = pruning.split(0, first)
     seen = p1 + rotate(-axes[0], q1, from_1[:, case]) - p2
@@ -96,7 +95,7 @@ def place_parallel_12(
     """Axes 1 and 2 parallel: only joint 3 changes the centre's height along them."""
     axes, (p1, p2, p3) = shoulder.axes, shoulder.points[:, :, None]
     c, slack = shoulder.centre[:, None], shoulder.slack
-    height = axes[0] @ (centre - p3)
+    height = along(axes[0], centre - p3)
     third = subproblem_4(axes[2], c - p3, axes[0][:, None], height, slack)
     case, q3 = pruning.split(2, third)
     bent = p3 + rotate(axes[2], q3, c - p3) - p2

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from mmplan.ik.rotation import along, dot, turn_terms
 from mmplan.shapes import Array
 
 # Two solutions nearer to each other than this (rad) are one.
@@ -41,36 +42,9 @@ class AnglePairs(NamedTuple):
     exists: npt.NDArray[np.bool_]
 
 
-def cross(axis: Array, vectors: Array) -> Array:
-    """The cross products axis × vector, (3, m)."""
-    x, y, z = axis
-    matrix = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    product: Array = matrix @ vectors
-    return product
-
-
-def dot(a: Array, b: Array) -> Array:
-    """The scalar products of vectors (3, m) with vectors (3, m), (m,)."""
-    product: Array = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-    return product
-
-
-def rotate(axis: Array, angle: Array, vectors: Array) -> Array:
-    """Vectors (3, ..., m) turned by angles (m,) about one axis (Rodrigues' formula)."""
-    cosine = np.cos(angle)
-    turned: Array = cosine * vectors
-    flat = vectors.reshape(3, -1)
-    turned += np.sin(angle) * cross(axis, flat).reshape(vectors.shape)
-    along = (axis @ flat).reshape(vectors.shape[1:])
-    turned += np.multiply.outer(axis, along * (1.0 - cosine))
-    return turned
-
-
 def subproblem_1(axis: Array, start: Array, end: Array) -> Array:
     """The angle (m,) about the axis that turns `start` nearest to `end`."""
-    sine = dot(end, cross(axis, start))
-    cosine = dot(start, end) - (axis @ start) * (axis @ end)
-    angle: Array = np.arctan2(sine, cosine)
+    angle: Array = np.arctan2(*turn_terms(axis, start, end))
     return angle
 
 
@@ -84,19 +58,18 @@ def subproblem_2(
     """
     mixed = float(axis_1 @ axis_2)
     divisor = 1.0 - mixed**2
-    along_1, along_2 = axis_1 @ start_1, axis_2 @ start_2
-    a = (along_1 - mixed * along_2) / divisor
-    b = (along_2 - mixed * along_1) / divisor
-    in_plane = axis_1[:, None] * a + axis_2[:, None] * b
+    height_1, height_2 = along(axis_1, start_1), along(axis_2, start_2)
+    a = (height_1 - mixed * height_2) / divisor
+    b = (height_2 - mixed * height_1) / divisor
+    in_plane = np.multiply.outer(axis_1, a) + np.multiply.outer(axis_2, b)
     length2 = dot(start_1, start_1)
-    across2 = (length2 - dot(in_plane, in_plane)) / divisor
-    across = np.sqrt(np.maximum(across2, 0.0))
-    normal = np.cross(axis_1, axis_2)[:, None]
+    across2 = length2 - dot(in_plane, in_plane)
+    across = np.sqrt(np.maximum(across2, 0.0) / divisor)
+    normal = np.multiply.outer(np.cross(axis_1, axis_2), across)
     length = np.sqrt(length2)
-    exists = across2 * divisor >= -slack * (length + slack)
+    exists = across2 >= -slack * (length + slack)
     first, second = [], []
-    for signed in (across, -across):
-        meeting = in_plane + normal * signed
+    for meeting in (in_plane + normal, in_plane - normal):
         first.append(subproblem_1(axis_1, start_1, meeting))
         second.append(subproblem_1(axis_2, start_2, meeting))
     apart = across > _SAME * length
@@ -120,11 +93,9 @@ def subproblem_4(
 
     `slack` is how far (m times the length of `normal`) the height may be missed by.
     """
-    along = (axis @ start) * (axis @ normal)
-    cosine = dot(start, normal) - along
-    sine = dot(normal, cross(axis, start))
-    radius = np.hypot(cosine, sine)
-    wanted = height - along
+    sine, cosine = turn_terms(axis, start, normal)
+    radius = np.sqrt(sine * sine + cosine * cosine)
+    wanted = height - along(axis, start) * along(axis, normal)
     free = radius < _NO_LENGTH
     ratio = wanted / np.where(free, 1.0, radius)
     spread = np.where(free, 0.0, np.arccos(np.clip(ratio, -1.0, 1.0)))

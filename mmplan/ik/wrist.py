@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from mmplan.ik.branches import Index, Pruning
-from mmplan.ik.subproblems import Angles, cross, dot, rotate, subproblem_1, subproblem_4
+from mmplan.ik.rotation import along, rotate, turn_terms
+from mmplan.ik.subproblems import Angles, subproblem_1, subproblem_4
 from mmplan.shapes import Array
 
 # Axes whose cosine is below this are perpendicular.
@@ -77,7 +78,7 @@ class Wrist:
 
     def _middle(self, last: Array, slack: float) -> Angles:
         """The middle angles, which tilt the last axis against the first as asked."""
-        height = self.first @ last
+        height = along(self.first, last)
         angles = subproblem_4(
             self.middle, self.last[:, None], self.first[:, None], height, slack
         )
@@ -97,8 +98,8 @@ class Wrist:
 
     def _sine(self, last: Array) -> Array:
         """The sine (m,) of the angle between the first axis and the images."""
-        normal = cross(self.first, last)
-        sine: Array = np.sqrt(dot(normal, normal))
+        _, square = turn_terms(self.first, last, last)
+        sine: Array = np.sqrt(np.maximum(square, 0.0))
         return sine
 
     def _aligned(self, last: Array) -> npt.NDArray[np.bool_]:
