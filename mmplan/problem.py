@@ -95,7 +95,8 @@ class PlannerSettings:
     plan; `time_limit` (s, for one path) is the safety net. `resolution` (m) is the
     longest way that any point of the robot moves between two collision checks.
     Paths keep `clearance` (m) from all that their ends are not nearer to already.
-    `shortcuts` is the number of attempts at shortening a path.
+    `shortcuts` is the number of attempts at shortening a path. `base_weight` is how
+    much more a way of the base counts in a path's length than the same way of the arm.
     """
 
     name: str = "RRTConnect"
@@ -105,6 +106,7 @@ class PlannerSettings:
     resolution: float = 0.01
     clearance: float = 0.002
     shortcuts: int = 100
+    base_weight: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -113,6 +113,8 @@ class PlannerSection(Section):
     """Distance that paths keep from all that their ends keep it from, m."""
     shortcuts: Annotated[int, Field(ge=0, le=10**6)] = PlannerSettings.shortcuts
     """Attempts at shortening a path."""
+    base_weight: Annotated[float, Field(ge=0.01, le=100)] = PlannerSettings.base_weight
+    """How much more a way of the base counts than the same way of the arm."""
 
     def settings(self) -> PlannerSettings:
         """The problem's value."""

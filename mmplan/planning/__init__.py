@@ -5,6 +5,7 @@ from mmplan.planning.joints import (
     MotionLimits,
     MovingJoints,
     motion_limits,
+    standing_joints,
     transfer_joints,
     transit_joints,
 )
@@ -30,6 +31,7 @@ __all__ = [
     "motion_limits",
     "plan_path",
     "require_planner",
+    "standing_joints",
     "straight_motion",
     "time_path",
     "transfer_joints",

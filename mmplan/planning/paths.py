@@ -9,6 +9,7 @@ import numpy as np
 
 from mmplan.planning.checking import PathChecker
 from mmplan.planning.joints import MovingJoints
+from mmplan.planning.metric import Metric
 from mmplan.planning.planners import require_planner
 from mmplan.planning.search import Search, search
 from mmplan.planning.shortening import path_length, shorten
@@ -32,6 +33,9 @@ class PathOutcome(Enum):
 class PathResult:
     """A path, or why there is none and how far the search got.
 
+    Joints that wrap may arrive whole turns from where the goal has them: the path ends
+    at that goal plus `turns`.
+
     Lengths and gaps are weighted by the joints' lever arms: a bound on how far points
     of the robot move.
     """
@@ -40,6 +44,7 @@ class PathResult:
     message: str  # one line for people
     path: Array | None = None  # (n, nq) waypoints, straight lines between them
     goal: int | None = None  # which of the goals it reaches
+    turns: Array | None = None  # (nq,)
     length: float = 0.0  # m
     gap: float = 0.0  # m, from where a failed search ended to the nearest goal
     start_tree: int = 0  # states that a failed search connected to the start
@@ -68,11 +73,12 @@ def plan_path(
     straight line, that is the path. The same generator state gives the same path.
 
     Raises:
-        InputError: if there is no planner of that name.
+        InputError: if there is no planner of that name, or it cannot plan for joints
+            that wrap.
         ValueError: if there are no goals or they differ from the start in a joint that
             does not move.
     """
-    require_planner(settings.name)
+    require_planner(settings.name, circles=bool(joints.wraps.any()))
     q_goals = np.atleast_2d(q_goals)
     _require_still(world, q_start, q_goals, joints)
     checker = PathChecker(world, settings.resolution)
@@ -83,16 +89,18 @@ def plan_path(
     usable = np.array([i for i, f in enumerate(faults) if f is None], dtype=np.int64)
     if not len(usable):
         return _failure(checker, PathOutcome.INVALID_GOAL, f"the goal: {faults[0]}")
-    straight = _straight_path(checker, q_start, q_goals[usable])
+    metric = Metric.of_joints(joints, checker.sweep.weights)
+    straight = _straight_path(checker, metric, q_start, q_goals[usable])
     seed = int(rng.integers(1, 2**31))
     if straight is not None:
-        return _success(checker, straight, q_goals)
+        return _success(checker, metric, straight, q_goals)
     found = search(checker, q_start, q_goals[usable], joints, settings, seed)
     if found.waypoints is None:
         return _exhausted(checker, found, settings)
-    waypoints = _with_exact_ends(found.waypoints, q_start, q_goals[usable])
-    path = shorten(waypoints, checker, settings.shortcuts, rng)
-    return _success(checker, path, q_goals, found.iterations)
+    waypoints = np.vstack([q_start, found.waypoints[1:]])
+    waypoints = _with_exact_end(metric.unwrapped(waypoints), metric, q_goals[usable])
+    path = shorten(waypoints, checker, joints, settings.shortcuts, rng)
+    return _success(checker, metric, path, q_goals, found.iterations)
 
 
 def _require_still(
@@ -100,7 +108,9 @@ def _require_still(
 ) -> None:
     if not len(q_goals):
         raise ValueError("a path needs at least one goal")
-    still = np.setdiff1d(np.arange(len(q_start)), joints.indices)
+    followers = [f.follower for f in joints.followers]
+    moving = np.concatenate([joints.indices, np.array(followers, np.int64)])
+    still = np.setdiff1d(np.arange(len(q_start)), moving)
     moved = still[np.any(q_goals[:, still] != q_start[still], axis=0)]
     if len(moved):
         names = [world.model.names[j] for j in range(1, world.model.njoints)]
@@ -118,32 +128,41 @@ def _fault(world: PlanningWorld, q: Array, joints: MovingJoints) -> str | None:
 
 
 def _straight_path(
-    checker: PathChecker, q_start: Array, q_goals: Array
+    checker: PathChecker, metric: Metric, q_start: Array, q_goals: Array
 ) -> Array | None:
     """The straight path to the nearest goal that has one."""
-    distances = np.linalg.norm((q_goals - q_start) * checker.sweep.weights, axis=1)
+    q_goals = q_goals + metric.turns(q_goals, q_start)
+    distances = metric.distances(q_goals, q_start)
     for q_goal in q_goals[np.argsort(distances, kind="stable")]:
         if checker.edge_free(q_start, q_goal):
             return np.vstack([q_start, q_goal])
     return None
 
 
-def _with_exact_ends(waypoints: Array, q_start: Array, q_goals: Array) -> Array:
-    """The waypoints with the ends asked for instead of what scaling made of them."""
-    off = np.abs(q_goals - waypoints[-1]).max(axis=1)
-    return np.vstack([q_start, waypoints[1:-1], q_goals[np.argmin(off)]])
+def _with_exact_end(path: Array, metric: Metric, q_goals: Array) -> Array:
+    """The path with the end asked for instead of what scaling made of it."""
+    q_goals = q_goals + metric.turns(q_goals, path[-1])
+    off = np.abs(q_goals - path[-1]).max(axis=1)
+    return np.vstack([path[:-1], q_goals[np.argmin(off)]])
 
 
 def _success(
-    checker: PathChecker, path: Array, q_goals: Array, iterations: int = 0
+    checker: PathChecker,
+    metric: Metric,
+    path: Array,
+    q_goals: Array,
+    iterations: int = 0,
 ) -> PathResult:
-    goal = int(np.flatnonzero(np.all(q_goals == path[-1], axis=1))[0])
+    turns = metric.turns(q_goals, path[-1])
+    goal = int(np.argmin(np.abs(q_goals + turns - path[-1]).max(axis=1)))
+    path = np.vstack([path[:-1], q_goals[goal] + turns[goal]])
     length = path_length(path, checker.sweep.weights)
     return PathResult(
         outcome=PathOutcome.FOUND,
         message=f"a path of {len(path)} waypoints after {iterations} iterations",
         path=read_only(path),
         goal=goal,
+        turns=read_only(turns[goal]),
         length=length,
         iterations=iterations,
         states=checker.states,

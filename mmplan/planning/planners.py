@@ -15,25 +15,40 @@ RANGE = 1.5
 # the bindings then lament on stderr when the process ends.
 _LEAKING = frozenset({"BITstar"})
 
+# The first three sample ellipsoids and the others project states, both of which OMPL
+# does in real spaces alone.
+_WITHOUT_CIRCLES = frozenset(
+    {"AORRTC", "InformedRRTstar", "SORRTstar", "BKPIECE1", "KPIECE1", "LBKPIECE1"}
+)
 
-def available_planners() -> tuple[str, ...]:
-    """The names that `make_planner` knows."""
+
+def available_planners(*, circles: bool = False) -> tuple[str, ...]:
+    """The names that `make_planner` knows.
+
+    With `circles` only those that can plan for joints that turn without end.
+    """
     return tuple(
         name
         for name, value in sorted(vars(og).items())
         if isinstance(value, type) and issubclass(value, ob.Planner)
-        if name not in _LEAKING
+        if name not in _LEAKING and not (circles and name in _WITHOUT_CIRCLES)
     )
 
 
-def require_planner(name: str) -> None:
-    """Refuse a name that no planner has.
+def require_planner(name: str, *, circles: bool = False) -> None:
+    """Refuse a name that no planner has, or none that can do with circles.
 
     Raises:
         InputError: naming what there is.
     """
     if name not in available_planners():
         raise InputError(unknown("planner", name, available_planners()))
+    able = available_planners(circles=circles)
+    if name not in able:
+        raise InputError(
+            f"planner '{name}' cannot plan for joints that turn without end; these "
+            f"can: {', '.join(able)}"
+        )
 
 
 def make_planner(name: str, si: ob.SpaceInformation) -> ob.Planner:

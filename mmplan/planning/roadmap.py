@@ -14,6 +14,7 @@ import numpy as np
 from ompl import base as ob
 from ompl import geometric as og
 
+from mmplan.planning.state_space import ScaledStates
 from mmplan.shapes import Array
 
 # Iterations of the first round; every round is as long as all before it.
@@ -21,19 +22,23 @@ FIRST_ROUND = 50
 
 
 def search_roadmap(
-    planner: og.PRM, si: ob.SpaceInformation, stop: Callable[[], bool], goals: int
+    planner: og.PRM,
+    si: ob.SpaceInformation,
+    states: ScaledStates,
+    stop: Callable[[], bool],
+    goals: int,
 ) -> Array | None:
     """Grow a roadmap until it joins start and goal or `stop` says so.
 
     Returns:
-        The scaled states of the shortest way through the roadmap, (n, dimension).
+        The configurations (n, nq) along the shortest way through the roadmap.
     """
     for _ in range(goals):
         # Only adds the start and one more goal to the roadmap.
         planner.solve(ob.plannerAlwaysTerminatingCondition())
     round_length = FIRST_ROUND
     while True:
-        way = _shortest_way(planner, si)
+        way = _shortest_way(planner, si, states)
         if way is not None or stop():
             return way
         planner.growRoadmapPtc(_for_iterations(round_length, stop))
@@ -47,13 +52,14 @@ def _for_iterations(
     return ob.PlannerTerminationCondition(lambda: next(left, None) is None or stop())
 
 
-def _shortest_way(planner: og.PRM, si: ob.SpaceInformation) -> Array | None:
-    """Dijkstra's search from all starts to the nearest goal, scaled states or None."""
+def _shortest_way(
+    planner: og.PRM, si: ob.SpaceInformation, states: ScaledStates
+) -> Array | None:
+    """Dijkstra's search from all starts to the nearest goal, None if none is."""
     data = ob.PlannerData(si)
     planner.getPlannerData(data)
-    dimension = si.getStateDimension()
     vertices = range(data.numVertices())
-    x = np.array([data.getVertex(i).getState()[0:dimension] for i in vertices])
+    q = [states.configuration(data.getVertex(i).getState()) for i in vertices]
     goals = {data.getGoalIndex(i) for i in range(data.numGoalVertices())}
     queue = [(0.0, data.getStartIndex(i), -1) for i in range(data.numStartVertices())]
     came_from: dict[int, int] = {}
@@ -63,9 +69,9 @@ def _shortest_way(planner: og.PRM, si: ob.SpaceInformation) -> Array | None:
             continue
         came_from[here] = before
         if here in goals:
-            return x[_way_back(here, came_from)[::-1]]
+            return np.array([q[i] for i in reversed(_way_back(here, came_from))])
         for there in data.getEdges(here):
-            step = float(np.linalg.norm(x[there] - x[here]))
+            step = float(states.metric.distances(q[there], q[here]))
             heapq.heappush(queue, (length + step, there, here))
     return None
 

@@ -15,6 +15,7 @@ from ompl import util as ou
 
 from mmplan.planning.checking import PathChecker
 from mmplan.planning.joints import MovingJoints
+from mmplan.planning.metric import Metric
 from mmplan.planning.planners import make_planner
 from mmplan.planning.roadmap import search_roadmap
 from mmplan.planning.state_space import ScaledStates, space_information
@@ -83,24 +84,25 @@ def search(
         InputError: if there is no planner of that name.
     """
     with _own_randomness(seed):
-        states = ScaledStates(q_start, joints, checker.sweep.weights)
+        metric = Metric.of_joints(joints, checker.sweep.weights)
+        states = ScaledStates(q_start, joints, metric)
         ends = np.vstack([q_start, q_goals])
-        si = space_information(states, joints, ends, checker)
+        si = space_information(states, ends, checker)
         problem = _problem(si, states, ends)
         planner = make_planner(settings.name, si)
         planner.setProblemDefinition(problem)
         planner.setup()
         budget = Budget(settings, problem)
         if isinstance(planner, og.PRM):
-            way = search_roadmap(planner, si, budget, len(q_goals))
+            way = search_roadmap(planner, si, states, budget, len(q_goals))
         else:
             planner.solve(ob.PlannerTerminationCondition(budget))
             way = _solution(problem, states)
         gap, start_tree, goal_tree = 0.0, 0, 0
         if way is None:
-            gap, start_tree, goal_tree = _how_far(planner, si, states.scaled(ends))
+            gap, start_tree, goal_tree = _how_far(planner, si, states, ends)
         return Search(
-            waypoints=None if way is None else states.configurations(way),
+            waypoints=way,
             iterations=budget.iterations,
             out_of_time=budget.out_of_time,
             gap=gap,
@@ -143,17 +145,17 @@ def _problem(
 
 
 def _solution(problem: ob.ProblemDefinition, states: ScaledStates) -> Array | None:
-    """The scaled states (n, dimension) of the path found, if one was."""
+    """The configurations (n, nq) of the path found, if one was."""
     if not problem.hasExactSolution():
         return None
     path = problem.getSolutionPath().getStates()
-    return np.array([state[0 : states.dimension] for state in path])
+    return np.array([states.configuration(state) for state in path])
 
 
 def _how_far(
-    planner: ob.Planner, si: ob.SpaceInformation, ends: Array
+    planner: ob.Planner, si: ob.SpaceInformation, states: ScaledStates, ends: Array
 ) -> tuple[float, int, int]:
-    """The gap and the sizes of the trees of a `Search`; ends (1 + g, dimension)."""
+    """The gap and the sizes of the trees of a `Search`; ends (1 + g, nq)."""
     data = ob.PlannerData(si)
     planner.getPlannerData(data)
     neighbours: dict[int, set[int]] = {i: set() for i in range(data.numVertices())}
@@ -161,14 +163,14 @@ def _how_far(
         for j in data.getEdges(i):
             neighbours[i].add(j)
             neighbours[j].add(i)
-    states = [data.getVertex(i).getState()[0 : ends.shape[1]] for i in neighbours]
-    x = np.array(states).reshape(-1, ends.shape[1])
+    found = [states.configuration(data.getVertex(i).getState()) for i in neighbours]
+    q = np.array(found).reshape(-1, ends.shape[1])
     # (1 + g, vertices); the planner itself also calls its nearest misses goals.
-    distances = np.linalg.norm(x[None] - ends[:, None], axis=2)
+    distances = states.metric.distances(q[None], ends[:, None])
     start_tree = _connected(neighbours, np.flatnonzero(distances[0] < SAME_STATE))
     at_goals = np.flatnonzero(np.any(distances[1:] < SAME_STATE, axis=0))
-    reached = np.vstack([ends[:1], x[sorted(start_tree)]])
-    gap = np.linalg.norm(reached[None] - ends[1:, None], axis=2).min()
+    reached = np.vstack([ends[:1], q[sorted(start_tree)]])
+    gap = states.metric.distances(reached[None], ends[1:, None]).min()
     return float(gap), len(start_tree), len(_connected(neighbours, at_goals))
 
 

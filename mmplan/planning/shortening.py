@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from mmplan.planning.checking import PathChecker
+from mmplan.planning.joints import MovingJoints
+from mmplan.planning.metric import Metric
 from mmplan.shapes import Array
 
 # A shortcut is worth its checks if it saves more than this share of the path's length.
@@ -12,34 +14,45 @@ MIN_GAIN = 0.01
 
 
 def shorten(
-    path: Array, checker: PathChecker, attempts: int, rng: np.random.Generator
+    path: Array,
+    checker: PathChecker,
+    joints: MovingJoints,
+    attempts: int,
+    rng: np.random.Generator,
 ) -> Array:
     """A shorter path (m, nq) between the same ends, free where the given one is.
 
     First drops waypoints that are not needed. Then tries shortcuts between two random
     places, in turn of all joints and of one joint alone, the others going on as before
     (Geraerts and Overmars, "Creating high-quality paths for motion planning", 2007).
-    Lengths are weighted by the joints' lever arms.
+    Lengths are weighted by the joints' lever arms and costs. Joints that wrap may end
+    whole turns from where they did.
     """
-    path = drop_waypoints(path, checker)
+    metric = Metric.of_joints(joints, checker.sweep.weights)
+    path = drop_waypoints(path, checker, metric)
     moving = np.flatnonzero(np.ptp(path, axis=0))
+    moving = np.intersect1d(moving, joints.indices)
     for attempt in range(attempts):
         if len(path) == 2:  # straight already
             break
         joint = int(rng.choice(moving)) if attempt % 2 else None
         first, second = np.sort(rng.random(2))
-        path = _try_shortcut(path, checker, (first, second), joint)
-    return drop_waypoints(path, checker)
+        path = _try_shortcut(path, checker, joints, metric, (first, second), joint)
+    return drop_waypoints(path, checker, metric)
 
 
-def drop_waypoints(path: Array, checker: PathChecker) -> Array:
+def drop_waypoints(path: Array, checker: PathChecker, metric: Metric) -> Array:
     """The path less the waypoints that a straight edge can do without, greedily."""
+    path = path.copy()
     kept = [0]
     while kept[-1] < len(path) - 1:
         here = kept[-1]
+        q = path[here]
         ahead = range(len(path) - 1, here + 1, -1)
-        reach = (i for i in ahead if checker.edge_free(path[here], path[i]))
-        kept.append(next(reach, here + 1))
+        near = ((i, path[i] + metric.turns(path[i], q)) for i in ahead)
+        there = next((i for i, q_to in near if checker.edge_free(q, q_to)), here + 1)
+        path[there:] += metric.turns(path[there], q)
+        kept.append(there)
     return path[kept]
 
 
@@ -49,10 +62,15 @@ def path_length(path: Array, weights: Array) -> float:
 
 
 def _try_shortcut(
-    path: Array, checker: PathChecker, places: tuple[float, float], joint: int | None
+    path: Array,
+    checker: PathChecker,
+    joints: MovingJoints,
+    metric: Metric,
+    places: tuple[float, float],
+    joint: int | None,
 ) -> Array:
     """The path with a shortcut between two places in [0, 1], or as it was."""
-    weights = checker.sweep.weights
+    weights = metric.weights
     steps = np.linalg.norm(np.diff(path, axis=0) * weights, axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     i, q_i = _place(path, along, places[0] * along[-1])
@@ -60,12 +78,15 @@ def _try_shortcut(
     if i == j:
         return path
     old = np.vstack([q_i, path[i + 1 : j + 1], q_j])
-    new = np.vstack([q_i, q_j]) if joint is None else _straightened(old, weights, joint)
+    turns = metric.turns(q_j, q_i) if joint is None else np.zeros_like(q_j)
+    new = np.vstack([q_i, q_j + turns])
+    if joint is not None:
+        new = joints.with_followers(_straightened(old, weights, joint))
     if path_length(old, weights) - path_length(new, weights) < MIN_GAIN * along[-1]:
         return path
     if not checker.path_free(new):
         return path
-    return np.vstack([path[: i + 1], new, path[j + 1 :]])
+    return np.vstack([path[: i + 1], new, path[j + 1 :] + turns])
 
 
 def _place(path: Array, along: Array, length: float) -> tuple[int, Array]:

@@ -1,7 +1,7 @@
 """OMPL's state space over the moving joints, and its checks against the world.
 
 States are joint values times the joints' longest lever arms, so that OMPL's distances
-are lengths in the workspace (m).
+are lengths in the workspace (m); joints that wrap have circles of that size.
 
 The objects that Python hands to OMPL must not keep the `SpaceInformation`: OMPL keeps
 them, and such a cycle is never freed.
@@ -14,6 +14,7 @@ from ompl import base as ob
 
 from mmplan.planning.checking import PathChecker
 from mmplan.planning.joints import MovingJoints
+from mmplan.planning.metric import Metric
 from mmplan.shapes import Array
 
 # Sampled joint values keep this share of their range away from the joint limits, so
@@ -22,34 +23,72 @@ LIMIT_MARGIN = 1e-3
 
 
 class ScaledStates:
-    """Turns OMPL's states into configurations and back."""
+    """Turns OMPL's states into configurations and back.
 
-    def __init__(self, q_still: Array, joints: MovingJoints, weights: Array) -> None:
-        """Take the still joints' values from `q_still` (nq,); weights (nq,)."""
+    States are points of a real space, one coordinate a joint. Where joints wrap, a
+    state is compound: a point for the joints that do not, then a place on the circle
+    for each joint that does. OMPL adds up the distances of the parts.
+    """
+
+    def __init__(self, q_still: Array, joints: MovingJoints, metric: Metric) -> None:
+        """Take the still joints' values from `q_still` (nq,)."""
         self._q_still = q_still
-        self._indices = joints.indices
-        self._weights = weights[joints.indices]
-        self.dimension = len(joints.indices)
+        self._joints = joints
+        self.metric = metric
+        self._straight = joints.indices[~joints.wraps]
+        self._round = joints.indices[joints.wraps]
+        self._scales = metric.weights[self._straight]
 
     def configuration(self, state: ob.State) -> Array:
-        """The configuration (nq,) of a state."""
-        q: Array = self.configurations(np.array([state[0 : self.dimension]]))[0]
-        return q
-
-    def configurations(self, scaled: Array) -> Array:
-        """The configurations (n, nq) of coordinates (n, dimension)."""
-        q = np.tile(self._q_still, (len(scaled), 1))
-        q[:, self._indices] = scaled / self._weights
-        return q
-
-    def scaled(self, q: Array) -> Array:
-        """The coordinates (..., dimension) of configurations (..., nq)."""
-        return q[..., self._indices] * self._weights
+        """The configuration (nq,) of a state; joints that wrap are in [-π, π]."""
+        q = self._q_still.copy()
+        k = len(self._straight)
+        if not len(self._round):
+            q[self._straight] = np.array(state[0:k]) / self._scales
+        else:
+            if k:
+                q[self._straight] = np.array(state[0][0:k]) / self._scales
+            first = int(k > 0)
+            q[self._round] = [state[first + i].value for i in range(len(self._round))]
+        return self._joints.with_followers(q)
 
     def write(self, q: Array, state: ob.State) -> None:
         """Set a state to a configuration (nq,)."""
-        for i, value in enumerate(self.scaled(q)):
-            state[i] = float(value)
+        k = len(self._straight)
+        part = state[0] if k and len(self._round) else state
+        for i, value in enumerate(q[self._straight] * self._scales):
+            part[i] = float(value)
+        for i, angle in enumerate(q[self._round]):
+            state[int(k > 0) + i].value = float(
+                np.mod(angle + np.pi, 2 * np.pi) - np.pi
+            )
+
+    def space(self, ends: Array) -> ob.StateSpace:
+        """The space within the joint limits; ends (n, nq) of paths are inside too."""
+        k = len(self._straight)
+        real = ob.RealVectorStateSpace(k)
+        real.setBounds(self._bounds(ends))
+        if not len(self._round):
+            return real
+        compound = ob.CompoundStateSpace()
+        if k:
+            compound.addSubspace(real, 1.0)
+        for weight in self.metric.weights[self._round]:
+            compound.addSubspace(ob.SO2StateSpace(), float(weight))
+        return compound
+
+    def _bounds(self, ends: Array) -> ob.RealVectorBounds:
+        straight = ~self._joints.wraps
+        lower, upper = self._joints.lower[straight], self._joints.upper[straight]
+        margin = LIMIT_MARGIN * (upper - lower)
+        scaled = ends[:, self._straight] * self._scales
+        low = np.vstack([(lower + margin) * self._scales, scaled]).min(axis=0)
+        high = np.vstack([(upper - margin) * self._scales, scaled]).max(axis=0)
+        bounds = ob.RealVectorBounds(len(self._straight))
+        for i, (least, most) in enumerate(zip(low, high, strict=True)):
+            bounds.setLow(i, float(least))
+            bounds.setHigh(i, float(most))
+        return bounds
 
 
 class WorldValidity(ob.StateValidityChecker):
@@ -81,39 +120,21 @@ class WorldMotions(ob.MotionValidator):
 
     def checkMotion(self, start: ob.State, end: ob.State) -> bool:
         """OMPL's question; it takes the start as checked."""
-        return self._checker.edge_free(
-            self._states.configuration(start), self._states.configuration(end)
-        )
+        q_from = self._states.configuration(start)
+        q_to = self._states.configuration(end)
+        turns = self._states.metric.turns(q_to, q_from)
+        return self._checker.edge_free(q_from, q_to + turns)
 
 
 def space_information(
-    states: ScaledStates, joints: MovingJoints, ends: Array, checker: PathChecker
+    states: ScaledStates, ends: Array, checker: PathChecker
 ) -> ob.SpaceInformation:
     """The space within the joint limits with its checks, ready to plan in.
 
     The ends (n, nq) of the wanted path are always inside.
     """
-    dimension = states.dimension
-    space = ob.RealVectorStateSpace(dimension)
-    space.setBounds(_bounds(joints, states, ends))
-    si = ob.SpaceInformation(space)
+    si = ob.SpaceInformation(states.space(ends))
     si.setStateValidityChecker(WorldValidity(si, states, checker))
     si.setMotionValidator(WorldMotions(si, states, checker))
     si.setup()
     return si
-
-
-def _bounds(
-    joints: MovingJoints, states: ScaledStates, ends: Array
-) -> ob.RealVectorBounds:
-    margin = LIMIT_MARGIN * (joints.upper - joints.lower)
-    corners = np.tile(ends[0], (2, 1))
-    corners[:, joints.indices] = joints.lower + margin, joints.upper - margin
-    scaled = states.scaled(np.vstack([corners, ends]))
-    inside = np.vstack([scaled[:1], scaled[2:]]).min(axis=0)
-    beyond = scaled[1:].max(axis=0)
-    bounds = ob.RealVectorBounds(states.dimension)
-    for i, (low, high) in enumerate(zip(inside, beyond, strict=True)):
-        bounds.setLow(i, float(low))
-        bounds.setHigh(i, float(high))
-    return bounds

@@ -1,6 +1,6 @@
 """A world simple enough to be judged by hand, and the shipped robot in a kitchen."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import coal
@@ -97,6 +97,20 @@ def stick_joints():
         np.arange(3),
         model.lowerPositionLimit,
         model.upperPositionLimit,
+        np.zeros(3, dtype=bool),
+        np.ones(3),
+    )
+
+
+@pytest.fixture
+def turning_joints(stick_joints):
+    """The same stick, its angle without limits."""
+    endless = np.array([0.0, 0.0, np.inf])
+    return replace(
+        stick_joints,
+        lower=stick_joints.lower - endless,
+        upper=stick_joints.upper + endless,
+        wraps=np.array([False, False, True]),
     )
 
 

@@ -211,7 +211,7 @@ def test_joints_that_do_not_move_must_not_differ(kitchen, kitchen_world):
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_shortening_never_lengthens_and_keeps_the_ends(gap, seed):
+def test_shortening_never_lengthens_and_keeps_the_ends(gap, stick_joints, seed):
     rng = np.random.default_rng(seed)
     checker = PathChecker(gap, RESOLUTION)
     knots = rng.uniform([-1.5, -1.0, -1.0], [-0.6, 1.5, 1.0], (5, 3))
@@ -220,15 +220,15 @@ def test_shortening_never_lengthens_and_keeps_the_ends(gap, seed):
         path = np.vstack(
             [LEFT, LEFT + np.array([0.0, 0.5, 0.0]), LEFT + np.array([0.0, 1.0, 0.0])]
         )
-    short = shorten(path, checker, 50, rng)
+    short = shorten(path, checker, stick_joints, 50, rng)
     weights = checker.sweep.weights
     assert path_length(short, weights) <= path_length(path, weights) + 1e-12
     assert np.array_equal(short[[0, -1]], path[[0, -1]])
     assert not gap.shrunk(RESOLUTION / 2).any_collision(finely(short))
 
 
-def test_a_detour_in_the_open_becomes_a_straight_line(stick_among):
+def test_a_detour_in_the_open_becomes_a_straight_line(stick_among, stick_joints):
     path = np.array([[0.0, 0, 0], [1, 1, 2], [-1, 1, -2], [1.0, 0, 0]])
     checker = PathChecker(stick_among(), RESOLUTION)
-    short = shorten(path, checker, 10, np.random.default_rng(0))
+    short = shorten(path, checker, stick_joints, 10, np.random.default_rng(0))
     assert np.array_equal(short, path[[0, -1]])

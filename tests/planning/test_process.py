@@ -12,6 +12,7 @@ from mmplan.planning import available_planners
 
 WORLD = """
 import sys
+from dataclasses import replace
 import numpy as np
 import coal, pinocchio as pin
 from mmplan.planning import *
@@ -35,10 +36,13 @@ class World:
 
 world = World()
 world.closed = False
-joints = MovingJoints(("x", "y"), np.arange(2), -np.ones(2), np.ones(2))
+joints = MovingJoints(
+    ("x", "y"), np.arange(2), -np.ones(2), np.ones(2), np.zeros(2, bool), np.ones(2)
+)
+round_joints = replace(joints, wraps=np.array([False, True]))
 limits = MotionLimits(np.ones(2), np.ones(2))
 
-def plan(**settings):
+def plan(joints=joints, **settings):
     settings = PlannerSettings(**settings)
     ends = np.array([[-0.5, -0.5], [0.5, -0.5]])
     rng = np.random.default_rng(0)
@@ -65,6 +69,15 @@ world.closed = False
 result = plan(name={name!r})
 assert result.found and plan(name={name!r}).found
 assert time_path(world, result.path, limits, 0.01).motion is not None
+""")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_joints_that_wrap_leak_nothing_either():
+    done = run("""
+assert plan(round_joints).found
+world.closed = True
+assert not plan(round_joints, iterations=100).found
 """)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
