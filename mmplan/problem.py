@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from mmplan.grasps import GraspFamily
     from mmplan.robot import Robot
     from mmplan.shapes import Array, Fixture, Shape
+    from mmplan.zones import Zone
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,13 +30,16 @@ class Obstacle:
 class Object:
     """A thing that can be moved: its shape, where it stands, how it can be grasped.
 
-    `grasps` maps the names that the scene gives to grasp families.
+    `grasps` maps the names that the scene gives to grasp families. `mass` (kg) is None
+    where it is not known; `friction` is that between the fingers and the object.
     """
 
     name: str
     shape: Shape
     T_world_object: Array  # (4, 4), before the first task
     grasps: dict[str, GraspFamily] = field(default_factory=dict)
+    mass: float | None = None
+    friction: float = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,16 +63,18 @@ class Task:
 
 @dataclass(frozen=True)
 class ScoreSettings:
-    """Weights of the score's terms and the grasp quality below which it is 0.
+    """Weights of the score's terms, and what grasp quality is.
 
+    `quality` names the measure G, and a score is 0 where it is below `min_quality`.
     The paper's grasps all close by force, so that it leaves grasp quality out; so do
-    the default weights.
+    the default weights, and the default measure is what the grasp family vouches for.
     """
 
     grasp: float = 0.0
     manipulability: float = 1.0
     clutter: float = 1.0
     min_quality: float = 0.0
+    quality: str = "family"
 
 
 @dataclass(frozen=True)
@@ -123,6 +129,7 @@ class Problem:
     score: ScoreSettings = ScoreSettings()
     optimizer: OptimizerSettings = OptimizerSettings()
     planner: PlannerSettings = PlannerSettings()
+    forbidden: tuple[Zone, ...] = ()  # where no part of the base's circle may be
     path: Path | None = None  # the scene file
     fingerprint: str = ""  # SHA-256 over the scene and all files that it uses
 

@@ -48,7 +48,11 @@ class Scenery:
 
     def centre_of_mass(self, name: str) -> Array:
         """The centre of mass (3,) of an object of even density, in its own frame."""
-        solids = self.objects[name]
-        volumes = np.array([s.geometry.computeVolume() for s in solids])
-        centres = [s.geometry.computeCOM() for s in solids]
-        return np.average([np.ravel(c) for c in centres], axis=0, weights=volumes)
+        return centre_of_mass(self.objects[name])
+
+
+def centre_of_mass(solids: tuple[Solid, ...]) -> Array:
+    """The centre of mass (3,) of an object's solids, of even density."""
+    volumes = np.array([s.geometry.computeVolume() for s in solids])
+    centres = [s.geometry.computeCOM() for s in solids]
+    return np.average([np.ravel(c) for c in centres], axis=0, weights=volumes)

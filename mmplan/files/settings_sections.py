@@ -14,6 +14,7 @@ Share = Annotated[float, Field(ge=0.0, le=1.0)]
 Weight = Annotated[float, Field(ge=0.0, le=1e6)]
 Count = Annotated[int, Field(ge=1, le=10**9)]
 
+QualityName = Literal["family", "epsilon", "volume"]
 OptimizerName = Literal[
     "coevolution",
     "random",
@@ -50,6 +51,8 @@ class ScoreSection(Section):
     """Weight of the distances between the robot's links and the obstacles."""
     min_quality: Share = ScoreSettings.min_quality
     """Grasp quality from 0 to 1 below which a candidate scores 0."""
+    quality: QualityName = "family"
+    """Measure of grasp quality: family, or of the wrenches: epsilon or volume."""
 
     @model_validator(mode="after")
     def _some_weight(self) -> Self:

@@ -13,7 +13,7 @@ from mmplan.problem import Problem, Task
 from mmplan.scoring.breakdown import Breakdown, links_of
 from mmplan.scoring.clutter import Clutter
 from mmplan.scoring.feasibility import Feasibility
-from mmplan.scoring.grasp_quality import grasp_quality
+from mmplan.scoring.grasp_quality import Hold, quality_measure
 from mmplan.scoring.manipulability import Manipulability
 from mmplan.scoring.outcome import End, Outcome
 from mmplan.scoring.term import Grasped, RowCache
@@ -54,6 +54,7 @@ class Holds(NamedTuple):
     T_object_tool: Array  # (n, 4, 4)
     opened: Array  # (n, hand joints), before it closes
     closed: Array  # (n, hand joints), on the object
+    quality: Array  # G, (n,)
     outcome: npt.NDArray[np.int8]  # NO_CONTACT, LOW_QUALITY or SCORED, (n,)
 
 
@@ -81,6 +82,7 @@ class ScoreFunction:
             end: Feasibility(problem, w, task.object) for end, w in self.worlds.items()
         }
         self._closer = HandCloser(robot, world.scenery.objects[task.object])
+        self._quality = quality_measure(problem, task, family, self._closer)
         self._centre = world.scenery.centre_of_mass(task.object)
         self.manipulability = Manipulability(robot)
         self.clutter = Clutter(
@@ -113,11 +115,10 @@ class ScoreFunction:
             list(_keys(grasps)), lambda new: self._hold(grasps[new])
         )
         hand = len(self.problem.robot.hand)
-        pose, opened, closed, outcome = np.split(
-            rows, [16, 16 + hand, 16 + 2 * hand], 1
-        )
+        pose, opened, closed, rated = np.split(rows, [16, 16 + hand, 16 + 2 * hand], 1)
+        quality, outcome = rated.T
         return Holds(
-            pose.reshape(-1, 4, 4), opened, closed, outcome[:, 0].astype(np.int8)
+            pose.reshape(-1, 4, 4), opened, closed, quality, outcome.astype(np.int8)
         )
 
     def breakdown(self, end: End, q_base: Array, grasp: Array) -> Breakdown:
@@ -160,18 +161,19 @@ class ScoreFunction:
         return outcomes[:, None].astype(np.float64)
 
     def _hold(self, grasps: Array) -> Array:
-        """The rows of `_holds`: pose, opened and closed hand, outcome."""
+        """The rows of `_holds`: pose, opened and closed hand, quality, outcome."""
         T_object_tool = self.family.tool_poses(grasps)
         closings = self._closer.close(T_object_tool)
         outcome = np.where(closings.touches, Outcome.SCORED, Outcome.NO_CONTACT)
-        low = grasp_quality(self.family, grasps) < self.problem.score.min_quality
+        quality = self._quality(Hold(grasps, T_object_tool, closings))
+        low = quality < self.problem.score.min_quality
         outcome = np.where(closings.touches & low, Outcome.LOW_QUALITY, outcome)
         return np.concatenate(
             [
                 T_object_tool.reshape(-1, 16),
                 closings.opened,
                 closings.closed,
-                outcome[:, None],
+                np.stack([quality, outcome], axis=1),
             ],
             axis=1,
         )
@@ -225,7 +227,7 @@ class ScoreFunction:
             return np.zeros((0, len(TERMS)))
         grasped = Grasped(end, q, self._number(q_base), self._number(grasps))
         raw = [
-            grasp_quality(self.family, grasps),
+            self.holds(grasps).quality,
             self.manipulability(grasped),
             self.clutter(grasped),
         ]
