@@ -128,7 +128,7 @@ def _drive(robot: Robot, place: int) -> Drive:
     speeds = [_top_speed(robot, group.names[place], fingers[place].bodies)]
     for follower in group.followers:
         if follower.leader == leader:
-            own = group.indices.tolist().index(follower.index)
+            own = group.indices.tolist().index(follower.follower)
             bodies = _bodies_moved_by(robot, group.names[own])
             fingers[own] = Finger(bodies, follower.multiplier, follower.offset)
             speed = _top_speed(robot, group.names[own], bodies)
