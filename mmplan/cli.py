@@ -9,7 +9,15 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from importlib.metadata import version
 
-from mmplan.commands import benchmark, check, generate, shipped, solve, verify
+from mmplan.commands import (
+    benchmark,
+    check,
+    generate,
+    robot,
+    shipped,
+    solve,
+    verify,
+)
 from mmplan.commands.results import (
     BAD_INPUT,
     INTERRUPTED,
@@ -56,7 +64,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=version("mmplan"))
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for command in (solve, verify, check, benchmark, generate, shipped):
+    for command in (solve, verify, check, benchmark, generate, robot, shipped):
         command.add(commands)
     return parser
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +15,9 @@ from rich.table import Table
 if TYPE_CHECKING:
     from mmplan.plan import Plan, TaskPlan
     from mmplan.verification_report import VerificationReport
+
+
+_UNBOUND = 10_000  # columns, more than any table has
 
 
 class ProgressDisplay:
@@ -51,7 +54,8 @@ def progress_display(*, quiet: bool) -> Iterator[ProgressDisplay | None]:
 
 def show(*parts: Table | str) -> None:
     """Print results on stdout, without colours or a width where it is no terminal."""
-    console = Console(highlight=False, soft_wrap=True)
+    width = None if sys.stdout.isatty() else _UNBOUND
+    console = Console(highlight=False, soft_wrap=True, width=width)
     for part in parts:
         console.print(part, markup=False) if isinstance(part, str) else console.print(
             part
@@ -100,6 +104,18 @@ def _ends(task: TaskPlan) -> Table:
 def _segments(task: TaskPlan) -> Table:
     table = _table("", *(segment.name for segment in task.segments))
     table.add_row("seconds", *(f"{s.duration:.2f}" for s in task.segments))
+    return table
+
+
+def grid(
+    headers: Sequence[str], rows: Iterable[Sequence[str]], *, left: int = 1
+) -> Table:
+    """A table of texts, of which the first `left` columns are flush left."""
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    for i, header in enumerate(headers):
+        table.add_column(header, justify="left" if i < left else "right")
+    for row in rows:
+        table.add_row(*row)
     return table
 
 

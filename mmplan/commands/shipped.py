@@ -13,7 +13,7 @@ from mmplan.commands.results import SOLVED, print_json
 def add(commands: Any) -> None:
     """Add the commands to the parser's."""
     for name, text, run in (
-        ("robots", "list the robots that are shipped", _robots),
+        ("robots", "list the robots that are shipped, with measured costs", _robots),
         ("scenes", "list the scenes that are shipped", _scenes),
     ):
         command = commands.add_parser(name, help=text, description=text)
@@ -26,19 +26,17 @@ def add(commands: Any) -> None:
 
 
 def _robots(options: argparse.Namespace) -> int:
-    from mmplan.robot_file import load_robot_description
+    from mmplan.robot_build import load_robot
+    from mmplan.robot_setup.summary import summary
+    from mmplan.terminal import grid, show
 
-    folder = assets.robots_folder()
-    return _list(
-        [
-            (
-                name,
-                load_robot_description(folder / name / assets.ROBOT_FILE).description,
-            )
-            for name in assets.robot_names()
-        ],
-        options.json,
-    )
+    rows = [summary(load_robot(name)) for name in assets.robot_names()]
+    if options.json:
+        print_json([row.to_json() for row in rows])
+    else:
+        show(grid(rows[0].HEADERS, (row.texts() for row in rows), left=2))
+        show("", *(f"{row.name}: {row.description}" for row in rows))
+    return SOLVED
 
 
 def _scenes(options: argparse.Namespace) -> int:

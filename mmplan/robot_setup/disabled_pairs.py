@@ -14,8 +14,6 @@ from mmplan.robot_setup.self_collisions import LinkPair, SelfCollisions
 
 # Links that come nearer than this stay checked: the search may have missed a touch, m.
 LEAST_DISTANCE = 0.002
-# Links that never come nearer than that, but nearly do: thin evidence, m.
-THIN = 0.01
 # Links that overlap this often where the joints are at 0 are not meant to be apart.
 _OFTEN = 0.5
 
