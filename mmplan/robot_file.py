@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
+from mmplan.exceptions import InputError
 from mmplan.files.document import Fault
 from mmplan.files.faults import validate
 from mmplan.files.robot_checks import joined_facts, robot_faults
@@ -73,8 +74,8 @@ def load_robot_description(path: Path) -> RobotDescription:
     facts = joined_facts(document, sources.facts)
     against = robot_faults(document, facts) if sources.urdf is not None else ()
     faults = (*faults, *missing, *against)
-    if faults or section is None or sources.urdf is None:
-        raise document.error(faults)
+    if faults or sources.faults or section is None or sources.urdf is None:
+        raise InputError(*document.error(faults).diagnostics, *sources.faults)
     try:
         urdf = composed(section, sources.urdf, sources.hand)
     except UrdfError as error:

@@ -50,7 +50,7 @@ def test_a_shipped_robot_is_described(name: str, tmp_path: Path) -> None:
         ("open: [0.05, 0.05]", "open: [0.05]", "hand.open: expected 2 numbers"),
         ("- [base, shoulder,", "- [base, sholder,", "disabled_pairs[0][1]: unknown"),
         ("urdf: puma_mobile.urdf", "urdf: puma.urdf", "urdf: no such file"),
-        ("urdf: puma_mobile.urdf", "urdf: robot.yaml", "urdf: 'robot.yaml' is not XML"),
+        ("urdf: puma_mobile.urdf", "urdf: robot.yaml", "is not XML"),
         ("urdf: puma_mobile.urdf", "urdf: 3", "urdf: expected a file name or"),
         ("mmplan_robot: 1", "mmplan_robot: 2", "mmplan_robot: this mmplan reads"),
     ],

@@ -8,8 +8,12 @@ from pathlib import Path
 from xml.etree import ElementTree as ET
 
 from mmplan import assets
+from mmplan.exceptions import Diagnostic, InputError
 from mmplan.files.document import Document, Fault, KeyPath
-from mmplan.files.urdf import Urdf, UrdfError, mesh_files, parse_urdf, urdf_facts
+from mmplan.files.located_xml import read_xml
+from mmplan.files.urdf import Urdf, mesh_files, urdf_facts
+from mmplan.files.urdf_faults import urdf_faults
+from mmplan.files.urdf_meshes import find_mesh
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,12 +29,14 @@ class UrdfFile:
 class RobotSources:
     """The URDF of a robot, that of a hand fixed to it, and an SRDF, if they are named.
 
-    Where a file is at fault the others are there nevertheless.
+    Where a file is at fault the others are there nevertheless. `faults` are those
+    inside of URDFs, with their places there.
     """
 
     urdf: UrdfFile | None = None
     hand: UrdfFile | None = None
     srdf: Path | None = None
+    faults: tuple[Diagnostic, ...] = ()
 
     @property
     def facts(self) -> tuple[Urdf, ...]:
@@ -55,26 +61,43 @@ def robot_sources(document: Document) -> tuple[RobotSources, tuple[Fault, ...]]:
     validation of its sections.
     """
     faults: list[Fault] = []
-    urdf = _urdf(document, ("urdf",), faults)
-    hand = _urdf(document, ("hand", "urdf"), faults)
+    within: list[Diagnostic] = []
+    urdf = _urdf(document, ("urdf",), faults, within)
+    hand = _urdf(document, ("hand", "urdf"), faults, within)
     srdf = _location(document, ("srdf",), faults)
-    sources = RobotSources(urdf, hand, srdf[0] if srdf else None)
+    sources = RobotSources(urdf, hand, srdf[0] if srdf else None, tuple(within))
     return sources, tuple(faults)
 
 
-def _urdf(document: Document, key: KeyPath, faults: list[Fault]) -> UrdfFile | None:
+def _urdf(
+    document: Document, key: KeyPath, faults: list[Fault], within: list[Diagnostic]
+) -> UrdfFile | None:
     location = _location(document, key, faults)
     if location is None:
         return None
     path, package_dirs = location
     try:
-        root = parse_urdf(path)
-        file = UrdfFile(path, root, mesh_files(root, path, package_dirs))
-        urdf_facts(file.root, file.meshes)
-    except UrdfError as error:
-        faults.append(Fault(key, str(error)))
+        xml = read_xml(path)
+    except InputError as error:
+        within += error.diagnostics
         return None
-    return file
+    if found := urdf_faults(xml, package_dirs):
+        within += found
+        return None
+    _leave_out_unseen(xml.root, path, package_dirs)
+    return UrdfFile(path, xml.root, mesh_files(xml.root, path, package_dirs))
+
+
+def _leave_out_unseen(
+    root: ET.Element, path: Path, package_dirs: tuple[Path, ...]
+) -> None:
+    """Remove what is only shown where its mesh is missing: plans need no looks."""
+    for link in root.findall("link"):
+        for visual in link.findall("visual"):
+            mesh = visual.find("geometry/mesh")
+            name = "" if mesh is None else mesh.get("filename", "")
+            if name and find_mesh(name, path, package_dirs) is None:
+                link.remove(visual)
 
 
 def _location(

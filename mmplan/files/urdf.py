@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
+from mmplan.files.urdf_meshes import find_mesh
+
 # A fixture's joints of other types stay where they are.
 MOVING = ("revolute", "prismatic", "continuous")
 
@@ -109,9 +111,12 @@ def mesh_files(
     Raises:
         UrdfError: A mesh is missing.
     """
-    folders = (path.parent, *package_dirs)
-    names = {mesh.get("filename", "") for mesh in root.iter("mesh")}
-    return {name: _mesh_path(path, name, folders) for name in sorted(names)}
+    names = sorted({mesh.get("filename", "") for mesh in root.iter("mesh")})
+    files = {name: find_mesh(name, path, package_dirs) for name in names}
+    for name, file in files.items():
+        if file is None:
+            raise UrdfError(f"'{path.name}' needs a mesh that is missing: '{name}'")
+    return {name: file for name, file in files.items() if file is not None}
 
 
 def number_of(element: ET.Element, name: str, default: str = "0") -> float:
@@ -144,12 +149,3 @@ def _mimic(element: ET.Element | None) -> Mimic | None:
         return None
     multiplier = number_of(element, "multiplier", "1")
     return Mimic(element.get("joint", ""), multiplier, number_of(element, "offset"))
-
-
-def _mesh_path(urdf: Path, name: str, folders: Sequence[Path]) -> Path:
-    relative = name.removeprefix("package://").removeprefix("file://")
-    for folder in folders:
-        path = folder / relative
-        if path.is_file():
-            return path
-    raise UrdfError(f"'{urdf.name}' needs a mesh that is missing: '{name}'")
