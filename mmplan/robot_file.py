@@ -77,7 +77,7 @@ def load_robot_description(path: Path) -> RobotDescription:
     if faults or sources.faults or section is None or sources.urdf is None:
         raise InputError(*document.error(faults).diagnostics, *sources.faults)
     try:
-        urdf = composed(section, sources.urdf, sources.hand)
+        urdf = composed(section, sources.urdf, sources.hand, sources.pieces)
     except UrdfError as error:
         raise document.error([Fault(("urdf",), str(error))]) from None
     try:

@@ -59,6 +59,6 @@ def _make_convex(
     for body in geometry.geometryObjects:
         link = model.frames[body.parentFrame].name
         mesh = body.geometry
-        if hasattr(mesh, "buildConvexHull") and kinds.get(link, "hull") == "hull":
+        if hasattr(mesh, "buildConvexHull") and kinds.get(link) != "mesh":
             mesh.buildConvexHull(True, "Qt")
             body.geometry = mesh.convex

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from xml.etree import ElementTree as ET
 
 from mmplan.files.pose_section import PoseSection
@@ -22,9 +23,14 @@ from mmplan.files.urdf_edit import named_meshes
 
 
 def composed(
-    section: RobotSection, urdf: UrdfFile, hand: UrdfFile | None
+    section: RobotSection,
+    urdf: UrdfFile,
+    hand: UrdfFile | None,
+    pieces: Mapping[str, Sequence[Path]],
 ) -> ET.Element:
     """The URDF of the whole robot, its meshes named by their paths.
+
+    `pieces` are the files of links whose meshes were cut into convex pieces.
 
     Raises:
         UrdfError: Its parts do not fit together.
@@ -55,6 +61,7 @@ def composed(
         },
         position=section.position,
         velocity=section.velocity,
+        pieces=pieces,
     )
     return compose(root, parts)
 

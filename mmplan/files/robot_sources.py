@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -29,6 +29,7 @@ class UrdfFile:
 class RobotSources:
     """The URDF of a robot, that of a hand fixed to it, and an SRDF, if they are named.
 
+    `pieces` are convex meshes that links collide with, by link, in the link's frame.
     Where a file is at fault the others are there nevertheless. `faults` are those
     inside of URDFs, with their places there.
     """
@@ -36,6 +37,7 @@ class RobotSources:
     urdf: UrdfFile | None = None
     hand: UrdfFile | None = None
     srdf: Path | None = None
+    pieces: Mapping[str, tuple[Path, ...]] = field(default_factory=dict)
     faults: tuple[Diagnostic, ...] = ()
 
     @property
@@ -52,6 +54,8 @@ class RobotSources:
                 yield from ((f"{role} {n}", path) for n, path in file.meshes.items())
         if self.srdf is not None:
             yield "robot srdf", self.srdf
+        for link, files in self.pieces.items():
+            yield from ((f"piece of {link} {file.name}", file) for file in files)
 
 
 def robot_sources(document: Document) -> tuple[RobotSources, tuple[Fault, ...]]:
@@ -65,7 +69,9 @@ def robot_sources(document: Document) -> tuple[RobotSources, tuple[Fault, ...]]:
     urdf = _urdf(document, ("urdf",), faults, within)
     hand = _urdf(document, ("hand", "urdf"), faults, within)
     srdf = _location(document, ("srdf",), faults)
-    sources = RobotSources(urdf, hand, srdf[0] if srdf else None, tuple(within))
+    path = srdf[0] if srdf else None
+    pieces = _pieces(document, faults)
+    sources = RobotSources(urdf, hand, path, pieces, tuple(within))
     return sources, tuple(faults)
 
 
@@ -98,6 +104,24 @@ def _leave_out_unseen(
             name = "" if mesh is None else mesh.get("filename", "")
             if name and find_mesh(name, path, package_dirs) is None:
                 link.remove(visual)
+
+
+def pieces_folder(robot: Path, link: str) -> Path:
+    """Where the pieces of a link that is `decomposed` are kept, for a robot.yaml."""
+    return robot.parent / "collision" / link
+
+
+def _pieces(document: Document, faults: list[Fault]) -> dict[str, tuple[Path, ...]]:
+    found = {}
+    for link in document.keys("collision"):
+        if document.get("collision", link) == "decomposed":
+            folder = pieces_folder(document.path.resolve(), link)
+            found[link] = tuple(sorted(folder.glob("*.obj")))
+            if not found[link]:
+                message = f"no pieces (*.obj) in {folder}"
+                hint = "'mmplan robot import' makes them"
+                faults.append(Fault(("collision", link), f"{message}; {hint}"))
+    return found
 
 
 def _location(

@@ -10,6 +10,7 @@ import math
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field
+from pathlib import Path
 from xml.etree import ElementTree as ET
 
 from mmplan.files import urdf_edit as edit
@@ -60,8 +61,8 @@ class Composition:
     The base's joints named in `base_joints` are added above the URDF's root, which
     stands at `mount` in the base's frame, beside `base_bodies`. `moving` are all
     joints that stay; others are held at `parked`, or at the value nearest to 0.
-    `bodies` replace the collision bodies of links. `position` and `velocity` replace
-    limits of joints.
+    `bodies` replace the collision bodies of links, `pieces` the meshes among them.
+    `position` and `velocity` replace limits of joints.
     """
 
     base_joints: Sequence[str]
@@ -74,6 +75,7 @@ class Composition:
     bodies: Mapping[str, Sequence[Body]] = field(default_factory=dict)
     position: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     velocity: Mapping[str, float] = field(default_factory=dict)
+    pieces: Mapping[str, Sequence[Path]] = field(default_factory=dict)
 
 
 def compose(urdf: ET.Element, parts: Composition) -> ET.Element:
@@ -94,6 +96,8 @@ def compose(urdf: ET.Element, parts: Composition) -> ET.Element:
     for name, bodies in parts.bodies.items():
         edit.remove_all(links[name], "collision")
         _add_bodies(links[name], "collision", bodies)
+    for name, files in parts.pieces.items():
+        _replace_meshes(links[name], files)
     if parts.base_joints or parts.base_bodies or parts.mount != RigidPose():
         _add_base(root, parts)
     _limit(root, parts)
@@ -151,6 +155,16 @@ def _add_base(root: ET.Element, parts: Composition) -> None:
 def _add_bodies(link: ET.Element, kind: str, bodies: Sequence[Body]) -> None:
     for body in bodies:
         edit.add_body(link, kind, body.name, deepcopy(body.shape), body.pose)
+
+
+def _replace_meshes(link: ET.Element, files: Sequence[Path]) -> None:
+    """Let a link collide with meshes in its own frame instead of those that it has."""
+    for body in link.findall("collision"):
+        if body.find("geometry/mesh") is not None:
+            link.remove(body)
+    shapes = [ET.Element("mesh", filename=str(file)) for file in files]
+    bodies = [Body(f"piece_{i}", s, RigidPose()) for i, s in enumerate(shapes)]
+    _add_bodies(link, "collision", bodies)
 
 
 def _limit(root: ET.Element, parts: Composition) -> None:
