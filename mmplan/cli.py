@@ -17,6 +17,7 @@ from mmplan.commands import (
     shipped,
     solve,
     verify,
+    view,
 )
 from mmplan.commands.results import (
     BAD_INPUT,
@@ -64,7 +65,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=version("mmplan"))
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for command in (solve, verify, check, benchmark, generate, robot, shipped):
+    for command in (solve, verify, view, check, benchmark, generate, robot, shipped):
         command.add(commands)
     return parser
 

@@ -34,6 +34,12 @@ def add(commands: Any) -> None:
         metavar="N",
         help="score evaluations, instead of the scene's number",
     )
+    solve.add_argument(
+        "--html", type=Path, metavar="FILE", help="write a page that shows the plan"
+    )
+    solve.add_argument(
+        "--view", action="store_true", help="show the plan in the browser"
+    )
     add_json(solve)
     quiet = "no progress and no result on the terminal"
     solve.add_argument("--quiet", action="store_true", help=quiet)
@@ -43,8 +49,9 @@ def add(commands: Any) -> None:
 def _solve(options: argparse.Namespace) -> int:
     from mmplan.scene_file import load_problem
 
-    if options.output is not None:
-        _require_folder(options.output)
+    for path in (options.output, options.html):
+        if path is not None:
+            _require_folder(path)
     problem = _with_options(load_problem(options.scene), options)
 
     from mmplan.pipeline import solve
@@ -58,7 +65,20 @@ def _solve(options: argparse.Namespace) -> int:
         print_json(_plan_summary(plan, options.output))
     elif not options.quiet:
         show(*plan_tables(plan, options.output))
+    if options.html is not None or options.view:
+        _show(plan, problem, options)
     return SOLVED
+
+
+def _show(plan: Plan, problem: Problem, options: argparse.Namespace) -> None:
+    """The page, and then the viewer until it is ended."""
+    from mmplan.commands.view import exhibit_of, show_live, write_page_of
+
+    exhibit = exhibit_of(plan, problem, "the plan")
+    if options.html is not None:
+        write_page_of(exhibit, options.html)
+    if options.view:
+        show_live(exhibit)
 
 
 def _with_options(problem: Problem, options: argparse.Namespace) -> Problem:

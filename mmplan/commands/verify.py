@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from mmplan.commands.arguments import add_json
+from mmplan.commands.plans import load_plan
 from mmplan.commands.results import SOLVED, print_json
-from mmplan.exceptions import InputError, VerificationError
+from mmplan.exceptions import VerificationError
 
 
 def add(commands: Any) -> None:
@@ -22,17 +23,7 @@ def add(commands: Any) -> None:
 
 
 def _verify(options: argparse.Namespace) -> int:
-    from mmplan.plan import Plan
-    from mmplan.scene_file import load_problem
-
-    plan = Plan.load(options.plan)
-    scene = options.scene if options.scene is not None else plan.path
-    if scene is None or (options.scene is None and not Path(scene).is_file()):
-        raise InputError(
-            f"{options.plan}: its scene '{scene or plan.scene}' is not there; give it "
-            "with --scene"
-        )
-    problem = load_problem(scene)
+    plan, problem = load_plan(options.plan, options.scene)
 
     from mmplan.terminal import show, verification_table
     from mmplan.verification import examine

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,8 +33,13 @@ class ClearanceCurve:
     pairs: tuple[tuple[str, str], ...]  # (n,)
 
 
-def clearance_curve(problem: Problem, plan: Plan, film: Film) -> ClearanceCurve:
-    """The clearance along a plan's film."""
+def clearance_curve(
+    problem: Problem, plan: Plan, film: Film, check: Callable[[], None] | None = None
+) -> ClearanceCurve:
+    """The clearance along a plan's film.
+
+    `check` is called now and then, and may raise to end this.
+    """
     stages = list(replay(problem, plan.tasks))
     step = max(1, round((len(film.times) - 1) / (film.duration * _RATE)))
     rows = np.arange(0, len(film.times), step)
@@ -43,6 +48,8 @@ def clearance_curve(problem: Problem, plan: Plan, film: Film) -> ClearanceCurve:
     distances = np.full(len(rows), np.inf)
     pairs = [("", "")] * len(rows)
     for number in np.unique(which).tolist():
+        if check is not None:
+            check()
         mine = np.flatnonzero(which == number)
         found = _stage_clearances(problem, stages[number], film.q[rows[mine]])
         for place, (distance, pair) in zip(mine.tolist(), found, strict=True):

@@ -32,6 +32,7 @@ class Exhibit:
     """Parts and the film that they move in."""
 
     title: str
+    subtitle: str
     problem: Problem
     plan: Plan | None
     parts: tuple[Part, ...]
@@ -46,7 +47,8 @@ def exhibit_of_plan(problem: Problem, plan: Plan, rate: float = RATE) -> Exhibit
     """A plan: its film, the paths of tool and base, where the object is to go."""
     film = film_of_plan(problem, plan, rate)
     parts = [*_world(problem), *_goals(problem), *_paths(film)]
-    return Exhibit(f"Plan of {plan.scene}", problem, plan, tuple(parts), film)
+    subtitle = f"{plan.robot}, seed {plan.seed}, {film.duration:.2f} s of motion"
+    return Exhibit(plan.scene, subtitle, problem, plan, tuple(parts), film)
 
 
 def exhibit_of_scene(problem: Problem) -> Exhibit:
@@ -56,7 +58,8 @@ def exhibit_of_scene(problem: Problem) -> Exhibit:
 
     parts = [*_world(problem), *_goals(problem), *scene_hints(problem)]
     film = film_of_scene(problem)
-    return Exhibit(f"Scene {problem.name}", problem, None, tuple(parts), film)
+    subtitle = f"{problem.robot.name}, {len(problem.tasks)} tasks, not solved"
+    return Exhibit(problem.name, subtitle, problem, None, tuple(parts), film)
 
 
 def robot_at(exhibit: Exhibit, q: Array, colour: Colour, name: str) -> Iterator[Part]:

@@ -53,14 +53,16 @@ class Film:
         return started[-1] if started else None
 
 
-def film_of_plan(
-    problem: Problem, plan: Plan, rate: float | None, times: Array | None = None
-) -> Film:
-    """The film of a plan at `rate` moments a second, or at given times (s)."""
+def film_of_plan(problem: Problem, plan: Plan, rate: float) -> Film:
+    """The film of a plan with about `rate` moments a second, all equally far apart."""
+    moments = max(2, round(plan.duration * rate) + 1)
+    return film_at(problem, plan, np.linspace(0.0, plan.duration, moments))
+
+
+def film_at(problem: Problem, plan: Plan, times: Array) -> Film:
+    """The film of a plan at rising times (n,), s."""
     stages = list(replay(problem, plan.tasks))
     marks = _marks(stages)
-    if times is None:
-        times = _even_times(marks[-1].end, rate or 1.0)
     starts = np.array([mark.start for mark in marks])
     which = np.clip(np.searchsorted(starts, times, side="right") - 1, 0, None)
     q = np.empty((len(times), problem.robot.model.nq))
@@ -120,7 +122,3 @@ def _marks(stages: Sequence[Stage]) -> tuple[Mark, ...]:
         Mark(stage.segment.name, stage.task.object, start, end)
         for stage, start, end in zip(stages, [0.0, *ends[:-1]], ends, strict=True)
     )
-
-
-def _even_times(duration: float, rate: float) -> Array:
-    return np.linspace(0.0, duration, max(2, round(duration * rate) + 1))

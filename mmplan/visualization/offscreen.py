@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes.util
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from types import ModuleType, TracebackType
 from typing import Any
 
@@ -30,15 +31,20 @@ _SHADOWS, _SAMPLES = 2048, 4
 class Studio:
     """Parts lit and ready to be drawn again and again as their carriers move."""
 
-    def __init__(self, parts: Sequence[Part], size: tuple[int, int]) -> None:
+    def __init__(
+        self, parts: Sequence[Part], size: tuple[int, int], camera: Camera
+    ) -> None:
         """Prepare for pictures of a size: width and height in pixels.
+
+        The light falls in from beside the camera.
 
         Raises:
             InputError: MuJoCo is not installed, or there is no OpenGL.
         """
         self._mujoco = mujoco = _mujoco()
         width, height = size
-        spec, self._bodies = _model(mujoco, parts, size)
+        spec, self._bodies = _model(mujoco, parts, size, camera)
+        self._view = _view(mujoco, camera)
         self._model = spec.compile()
         self._data = mujoco.MjData(self._model)
         try:
@@ -60,7 +66,7 @@ class Studio:
         """Give the OpenGL context back."""
         self._renderer.close()
 
-    def picture(self, poses: Mapping[str, Array], camera: Camera) -> Image:
+    def picture(self, poses: Mapping[str, Array]) -> Image:
         """A picture of the parts, their carriers at poses T_world_carrier (4, 4)."""
         for carrier, place in self._bodies.items():
             T = poses[carrier]
@@ -70,17 +76,9 @@ class Studio:
             self._data.mocap_quat[place] = quat
         self._mujoco.mj_kinematics(self._model, self._data)
         self._mujoco.mj_camlight(self._model, self._data)
-        self._renderer.update_scene(self._data, self._camera(camera))
+        self._renderer.update_scene(self._data, self._view)
         image: Image = self._renderer.render()
         return image.copy()
-
-    def _camera(self, camera: Camera) -> Any:
-        view = self._mujoco.MjvCamera()
-        view.lookat = camera.target
-        view.distance = camera.distance
-        view.azimuth = camera.azimuth + 180.0
-        view.elevation = -camera.elevation
-        return view
 
 
 def _mujoco() -> ModuleType:
@@ -104,12 +102,23 @@ def _mujoco() -> ModuleType:
     return module
 
 
+def _view(mujoco: ModuleType, camera: Camera) -> Any:
+    view = mujoco.MjvCamera()
+    view.lookat = camera.target
+    view.distance = camera.distance
+    # MuJoCo's angles are those of the direction in which the camera looks.
+    view.azimuth = camera.azimuth + 180.0
+    view.elevation = -camera.elevation
+    return view
+
+
 def _model(
-    mujoco: ModuleType, parts: Sequence[Part], size: tuple[int, int]
+    mujoco: ModuleType, parts: Sequence[Part], size: tuple[int, int], camera: Camera
 ) -> tuple[Any, dict[str, int]]:
     """MuJoCo's model of the parts, and which mocap body stands for which carrier."""
     spec = mujoco.MjSpec()
     _set_the_stage(mujoco, spec, size)
+    _add_light(mujoco, spec, camera)
     bodies: dict[str, Any] = {WORLD: spec.worldbody}
     for number, part in enumerate(parts):
         if len(part.surface.triangles) == 0:
@@ -143,9 +152,14 @@ def _set_the_stage(mujoco: ModuleType, spec: Any, size: tuple[int, int]) -> None
         width=64,
         height=64,
     )
+
+
+def _add_light(mujoco: ModuleType, spec: Any, camera: Camera) -> None:
+    """A light like that of the sun, from high beside the camera."""
+    sun = replace(camera, azimuth=camera.azimuth + 50.0, elevation=55.0, distance=6.0)
     spec.worldbody.add_light(
-        pos=[-1.0, -1.0, 4.0],
-        dir=[0.35, 0.25, -1.0],
+        pos=sun.eye,
+        dir=sun.target - sun.eye,
         type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
         diffuse=[0.45] * 3,
         specular=[0.1] * 3,

@@ -15,6 +15,7 @@ import numpy as np
 from mmplan.collision import CollisionWorld
 from mmplan.collision.nearest import Nearest, nearest_obstacles
 from mmplan.optimizers import Archive, Optimizer, Queries, Triple, optimize
+from mmplan.optimizers.run import Progress
 from mmplan.pipeline import after_task, optimizer_of, score_function, task_generators
 from mmplan.plan import Plan, TaskPlan
 from mmplan.problem import Problem
@@ -72,8 +73,13 @@ class Search:
     cycles: tuple[Cycle, ...]
 
 
-def searches(problem: Problem, plan: Plan) -> Iterator[Search]:
-    """The search for each task of a plan, run again."""
+def searches(
+    problem: Problem, plan: Plan, progress: Progress | None = None
+) -> Iterator[Search]:
+    """The search for each task of a plan, run again.
+
+    `progress` is called with the evaluations done so far, and may raise to end this.
+    """
     rest = problem
     for number, rng in enumerate(task_generators(problem, plan.seed)):
         if number == len(plan.tasks):
@@ -82,7 +88,9 @@ def searches(problem: Problem, plan: Plan) -> Iterator[Search]:
         score = score_function(one)
         recorder = _Recorder(optimizer_of(score, rng))
         settings = one.optimizer
-        found = optimize(score, recorder, settings.evaluations, one.planner.candidates)
+        found = optimize(
+            score, recorder, settings.evaluations, one.planner.candidates, progress
+        )
         yield Search(
             task=number,
             candidates=tuple(_shown(score, found.candidates, plan.tasks[number])),
