@@ -8,6 +8,7 @@ from mmplan.collision.requests import make_exact
 from mmplan.collision.scenery import Scenery
 from mmplan.collision.solids import solids_of_obstacle
 from mmplan.collision.supports import clearances, overlaps, supports
+from mmplan.collision.vicinity import LinkBounds
 from mmplan.collision.world import (
     CONTACT_ZONE,
     TOUCH_TOLERANCE,
@@ -25,6 +26,7 @@ __all__ = [
     "CollisionWorld",
     "Contact",
     "HandCloser",
+    "LinkBounds",
     "LinkDistances",
     "Scenery",
     "TouchRules",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,9 @@ from mmplan.collision.requests import make_exact
 from mmplan.collision.world import CollisionWorld
 from mmplan.kinematics import ForwardKinematics
 from mmplan.shapes import Array
+
+Indices = npt.NDArray[np.int64]
+Mask = npt.NDArray[np.bool_]
 
 
 class LinkDistances:
@@ -33,7 +36,7 @@ class LinkDistances:
         self._kinematics = ForwardKinematics(world.model)
         self._geometry = world.geometry.clone()
         self._robot_bodies = [i for i, b in enumerate(bodies) if b.kind in _ROBOT]
-        obstacles = [i for i, b in enumerate(bodies) if b.kind in _OBSTACLE]
+        obstacles = [i for i, b in enumerate(bodies) if b.kind in OBSTACLES]
         owners = [bodies[i].owner for i in self._robot_bodies]
         self.links: tuple[str, ...] = tuple(dict.fromkeys(owners))
         self._link_of_body = np.array([self.links.index(o) for o in owners])
@@ -45,50 +48,96 @@ class LinkDistances:
         self._obstacle_bounds = moved_bounds(
             _stack(self._geometry, obstacles), _placements(self._geometry, obstacles)
         )
-        self._body_joint = [bodies[i].joint for i in self._robot_bodies]
+        self._body_joint = np.array([bodies[i].joint for i in self._robot_bodies])
         self._body_placement = _placements(self._geometry, self._robot_bodies)
 
-    def __call__(self, q: Array, links: npt.NDArray[np.int64]) -> Array:
+    def __call__(self, q: Array, links: Indices, needed: Mask | None = None) -> Array:
         """Distances (n, len(links)) in metres at q (n, nq) of some of `self.links`.
 
         A link that overlaps an obstacle has a distance of 0 or less. Without any
-        obstacle distances are infinite.
+        obstacle distances are infinite. Only those are computed that are `needed`
+        (n, len(links)), all by default; the others are infinite.
         """
-        bodies = np.flatnonzero(np.isin(self._link_of_body, links))
-        column = np.searchsorted(links, self._link_of_body[bodies]).tolist()
+        if needed is None:
+            needed = np.ones((len(q), len(links)), dtype=np.bool_)
         distances = np.full((len(q), len(links)), np.inf)
         for start in range(0, len(q), _CHUNK):
             chunk = slice(start, start + _CHUNK)
-            gaps = self._gaps(q[chunk], bodies)  # (chunk, bodies, obstacles)
-            order = np.argsort(gaps, axis=2)
-            gaps = np.take_along_axis(gaps, order, axis=2)
-            pairs = np.take_along_axis(self._pair[None, bodies], order, axis=2)
-            for row, found in enumerate(distances[chunk]):
-                self._place(q[start + row])
-                for body, link in enumerate(column):
-                    nearest = self._nearest(
-                        gaps[row, body], pairs[row, body], found[link]
-                    )
-                    found[link] = nearest
+            T, place = self._kinematics(q[chunk]), self._placing(q[chunk])
+            self._measure(T, place, links, needed[chunk], distances[chunk])
         return distances
 
-    def _gaps(self, q: Array, bodies: npt.NDArray[np.int64]) -> Array:
-        """Lower bounds (n, bodies, obstacles) of distances, infinite for no pair."""
-        joints = [self._body_joint[b] for b in bodies]
-        T = self._kinematics(q)[:, joints] @ self._body_placement[bodies]
+    def at(self, T_world_joint: Array, links: Indices) -> Array:
+        """Distances (n, len(links)), from poses (n, njoints, 4, 4) of the joints."""
+        distances = np.full((len(T_world_joint), len(links)), np.inf)
+        needed = np.ones(distances.shape, dtype=np.bool_)
+        moving = np.unique(self._body_joint[np.isin(self._link_of_body, links)])
+        place = self._placing_joints(T_world_joint, moving.tolist())
+        self._measure(T_world_joint, place, links, needed, distances)
+        return distances
+
+    def _measure(
+        self,
+        T: Array,
+        place: Callable[[int], None],
+        links: Indices,
+        needed: Mask,
+        distances: Array,
+    ) -> None:
+        """Fill in the distances (n, len(links)) that are needed, row by row."""
+        bodies = np.flatnonzero(np.isin(self._link_of_body, links))
+        column = np.searchsorted(links, self._link_of_body[bodies])
+        row, which = np.nonzero(needed[:, column])
+        gaps, pairs = self._by_rising_gap(T, row, bodies[which])
+        found, placed = zip(row.tolist(), column[which].tolist(), strict=True), -1
+        for k, (i, j) in enumerate(found):
+            if i != placed:
+                place(i)
+                placed = i
+            distances[i, j] = self._nearest(gaps[k], pairs[k], distances[i, j])
+
+    def _by_rising_gap(
+        self, T: Array, row: Indices, bodies: Indices
+    ) -> tuple[Array, Indices]:
+        """Lower bounds (k, obstacles) of the distances from bodies, and the pairs.
+
+        Body `bodies[k]` is moved by its joint's pose in row `row[k]` of T. Bounds are
+        infinite for no pair.
+        """
+        moving = T[row, self._body_joint[bodies]] @ self._body_placement[bodies]
         local = Bounds(*(part[bodies] for part in self._body_bounds))
-        moved = moved_bounds(local, T)
-        gaps = Bounds(*(part[:, :, None] for part in moved)).gap(self._obstacle_bounds)
-        return np.where(self._pair[bodies] >= 0, gaps, np.inf)
+        moved = Bounds(*(part[:, None] for part in moved_bounds(local, moving)))
+        pairs = self._pair[bodies]
+        gaps = np.where(pairs >= 0, moved.gap(self._obstacle_bounds), np.inf)
+        order = np.argsort(gaps, axis=1)
+        gaps, pairs = (np.take_along_axis(a, order, axis=1) for a in (gaps, pairs))
+        return gaps, pairs
 
-    def _place(self, q: Array) -> None:
-        pin.updateGeometryPlacements(
-            self._model, self._data, self._geometry, self._geometry_data, q
-        )
+    def _placing(self, q: Array) -> Callable[[int], None]:
+        """What puts all bodies where they are at a row of q (n, nq)."""
+        geometry, data = self._geometry, self._geometry_data
 
-    def _nearest(
-        self, gaps: Array, pairs: npt.NDArray[np.int64], nearest: float
-    ) -> float:
+        def place(row: int) -> None:
+            pin.updateGeometryPlacements(
+                self._model, self._data, geometry, data, q[row]
+            )
+
+        return place
+
+    def _placing_joints(
+        self, T_world_joint: Array, joints: list[int]
+    ) -> Callable[[int], None]:
+        """What puts the bodies of some joints where these are in a row."""
+        geometry, data = self._geometry, self._geometry_data
+
+        def place(row: int) -> None:
+            for joint in joints:
+                self._data.oMi[joint] = pin.SE3(T_world_joint[row, joint])
+            pin.updateGeometryPlacements(self._model, self._data, geometry, data)
+
+        return place
+
+    def _nearest(self, gaps: Array, pairs: Indices, nearest: float) -> float:
         """The least of `nearest` and the exact distances of pairs, by rising bounds."""
         for start in range(0, len(gaps), _FEW):
             few = slice(start, start + _FEW)
@@ -105,7 +154,7 @@ _CHUNK = 128
 # Pairs looked at in one go; seldom do more matter.
 _FEW = 8
 _ROBOT = ("base", "arm", "finger")
-_OBSTACLE = ("ground", "obstacle", "standing")
+OBSTACLES = ("ground", "obstacle", "standing")
 
 
 def _add_pairs(

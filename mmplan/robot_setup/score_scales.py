@@ -11,7 +11,7 @@ import numpy as np
 
 from mmplan.robot import Robot, ScoreScales
 from mmplan.robot_setup.configurations import bounds, with_arm
-from mmplan.scoring.clutter import LinkWeights
+from mmplan.scoring.link_weights import LinkWeights
 from mmplan.scoring.manipulability import manipulability
 from mmplan.shapes import Array
 

@@ -10,14 +10,16 @@ import numpy.typing as npt
 from mmplan.collision import CollisionWorld, Contact, HandCloser
 from mmplan.grasps import GraspFamily
 from mmplan.problem import Problem, Task
+from mmplan.scoring.branches import Branches, BranchSearch
 from mmplan.scoring.breakdown import Breakdown, links_of
 from mmplan.scoring.clutter import Clutter
-from mmplan.scoring.feasibility import Feasibility
+from mmplan.scoring.feasibility import Arms, Feasibility
 from mmplan.scoring.grasp_quality import Hold, quality_measure
-from mmplan.scoring.manipulability import Manipulability
 from mmplan.scoring.outcome import End, Outcome
-from mmplan.scoring.term import Grasped, RowCache
+from mmplan.scoring.term import Grasped, RowCache, row_keys
 from mmplan.shapes import Array
+
+Indices = npt.NDArray[np.int64]
 
 # What a term counts that is at the robot's scale.
 POINTS = 50.0
@@ -84,11 +86,13 @@ class ScoreFunction:
         self._closer = HandCloser(robot, world.scenery.objects[task.object])
         self._quality = quality_measure(problem, task, family, self._closer)
         self._centre = world.scenery.centre_of_mass(task.object)
-        self.manipulability = Manipulability(robot)
         self.clutter = Clutter(
             robot, {e: w.without(task.object) for e, w in self.worlds.items()}
         )
         self.factors = term_factors(problem)
+        self._search = BranchSearch(
+            robot, self._feasibility, self.clutter, self.factors
+        )
         self._holds = RowCache()
         self._bases = {end: RowCache() for end in End}
         self._scores = {end: RowCache() for end in End}
@@ -96,7 +100,7 @@ class ScoreFunction:
 
     def __call__(self, end: End, q_base: Array, grasps: Array) -> Scores:
         """Score bases (n, b) with grasp genes (n, g), row by row, at one end."""
-        keys = [b + g for b, g in zip(_keys(q_base), _keys(grasps), strict=True)]
+        keys = [b + g for b, g in zip(row_keys(q_base), row_keys(grasps), strict=True)]
         rows = self._scores[end].rows(
             list(keys), lambda new: self._evaluate(end, q_base[new], grasps[new])
         )
@@ -112,7 +116,7 @@ class ScoreFunction:
     def holds(self, grasps: Array) -> Holds:
         """Tool poses and hand openings of grasp genes (n, g)."""
         rows = self._holds.rows(
-            list(_keys(grasps)), lambda new: self._hold(grasps[new])
+            list(row_keys(grasps)), lambda new: self._hold(grasps[new])
         )
         hand = len(self.problem.robot.hand)
         pose, opened, closed, rated = np.split(rows, [16, 16 + hand, 16 + 2 * hand], 1)
@@ -129,7 +133,9 @@ class ScoreFunction:
         terms = dict(zip(TERMS, score.terms[0].tolist(), strict=True))
         if outcome != Outcome.SCORED:
             return Breakdown(outcome, 0.0, terms)
-        grasped = Grasped(end, score.q, self._number(base), self._number(grasps))
+        T_world_tool = self._in_world(end, self.holds(grasps).T_object_tool)
+        numbers = self._number(base), self._number(grasps)
+        grasped = Grasped(end, score.q, *numbers, T_world_tool)
         links = links_of(self.clutter, grasped, self.factors[TERMS.index("clutter")])
         return Breakdown(outcome, float(score.total[0]), terms, links)
 
@@ -148,10 +154,14 @@ class ScoreFunction:
         q[:, self.problem.robot.hand.indices] = hold.closed[0]
         return feasibility.least_contacts(q, hold.opened[0])
 
+    def arms(self, end: End, q_base: Array, grasps: Array) -> Arms:
+        """What reaches grasps (n, g) from bases (n, b), in collision or not."""
+        return self._feasibility[end].arms(q_base, self.family.tool_poses(grasps))
+
     def base_outcomes(self, end: End, q_base: Array) -> npt.NDArray[np.int8]:
         """What is known of bases (n, b) without any grasp, (n,) of Outcome."""
         rows = self._bases[end].rows(
-            list(_keys(q_base)),
+            list(row_keys(q_base)),
             lambda new: self._base_outcome_rows(end, q_base[new]),
         )
         return rows[:, 0].astype(np.int8)
@@ -180,74 +190,50 @@ class ScoreFunction:
 
     def _evaluate(self, end: End, q_base: Array, grasps: Array) -> Array:
         """The rows of `_scores`: total, terms, q, outcome."""
-        outcome, row, q = self._feasible_configurations(end, q_base, grasps)
-        terms = self._terms(end, q_base[row], grasps[row], q)
-        totals = terms.sum(axis=1)
-        best = _best_of_each(row, totals)
         nq = self.problem.robot.model.nq
         result = np.zeros((len(q_base), 4 + nq + 1))
         result[:, 4:-1] = np.nan
-        result[row[best], 0] = totals[best]
-        result[row[best], 1:4] = terms[best]
-        result[row[best], 4:-1] = q[best]
+        outcome, branches = self._branches(end, q_base, grasps)
+        best = self._search.best(branches, outcome)
+        row = branches.row[best.place]
+        result[row, 0] = best.terms.sum(axis=1)
+        result[row, 1:4] = best.terms
+        result[row, 4:-1] = branches.grasped.q[best.place]
         result[:, -1] = outcome
         return result
 
-    def _feasible_configurations(
+    def _branches(
         self, end: End, q_base: Array, grasps: Array
-    ) -> tuple[npt.NDArray[np.int8], npt.NDArray[np.int64], Array]:
-        """The outcome of each pair (n,), and all feasible configurations (m, nq).
+    ) -> tuple[npt.NDArray[np.int8], Branches]:
+        """The outcome of each pair (n,) so far, and what is left to check.
 
-        In between comes the row (m,) that each configuration belongs to. Tests come in
-        the order of `Outcome`, each on what the tests before it have left.
+        Tests come in the order of `Outcome`, each on what the tests before it have
+        left. Pairs that pass all have branches, and COLLISION for their outcome.
         """
-        feasibility = self._feasibility[end]
         outcome = self.base_outcomes(end, q_base)
         left = np.flatnonzero(outcome == Outcome.SCORED)
-        arms = feasibility.arms(q_base[left], self.family.tool_poses(grasps[left]))
+        arms = self.arms(end, q_base[left], grasps[left])
         outcome[left] = arms.outcome
         reached = arms.outcome == Outcome.SCORED
         arms, left = arms.rows(reached), left[reached]
         holds = self.holds(grasps[left])
-        outcome[left] = holds.outcome
-        row, branch = np.nonzero(
-            arms.within & (holds.outcome == Outcome.SCORED)[:, None]
-        )
-        q = arms.q[row, branch]
-        q[:, self.problem.robot.hand.indices] = holds.closed[row]
-        found = feasibility.outcomes(q, holds.opened[row])
-        outcome[left[row]] = Outcome.COLLISION
-        np.maximum.at(outcome, left[row], found)
-        free = found == Outcome.SCORED
-        return outcome, left[row[free]], q[free]
+        held = holds.outcome == Outcome.SCORED
+        outcome[left] = np.where(held, Outcome.COLLISION, holds.outcome)
+        which, branch = np.nonzero(arms.within & held[:, None])
+        row, q = left[which], arms.q[which, branch]
+        q[:, self.problem.robot.hand.indices] = holds.closed[which]
+        T_object_tool = holds.T_object_tool[which]
+        numbers = self._number(q_base)[row], self._number(grasps)[row]
+        grasped = Grasped(end, q, *numbers, self._in_world(end, T_object_tool))
+        opened, quality = holds.opened[which], holds.quality[which]
+        return outcome, Branches(row, grasped, opened, quality)
 
-    def _terms(self, end: End, q_base: Array, grasps: Array, q: Array) -> Array:
-        """The weighted terms (m, 3) of feasible configurations q (m, nq)."""
-        if len(q) == 0:
-            return np.zeros((0, len(TERMS)))
-        grasped = Grasped(end, q, self._number(q_base), self._number(grasps))
-        raw = [
-            self.holds(grasps).quality,
-            self.manipulability(grasped),
-            self.clutter(grasped),
-        ]
-        return np.stack(raw, axis=1) * self.factors
+    def _in_world(self, end: End, T_object_tool: Array) -> Array:
+        """Poses T_world_tool (n, 4, 4) of tool poses in the object's frame."""
+        return self.worlds[end].standing[self.task.object] @ T_object_tool
 
-    def _number(self, rows: Array) -> npt.NDArray[np.int64]:
+    def _number(self, rows: Array) -> Indices:
         """A number for each row, the same for equal rows."""
         numbers = self._numbers
-        found = [numbers.setdefault(key, len(numbers)) for key in _keys(rows)]
+        found = [numbers.setdefault(key, len(numbers)) for key in row_keys(rows)]
         return np.array(found, dtype=np.int64)
-
-
-def _keys(rows: Array) -> list[bytes]:
-    """Hashable keys of the rows of an array (n, d)."""
-    return [row.tobytes() for row in np.ascontiguousarray(rows)]
-
-
-def _best_of_each(row: npt.NDArray[np.int64], totals: Array) -> npt.NDArray[np.int64]:
-    """The places of the greatest total of each row; the first of equals."""
-    order = np.lexsort((np.arange(len(row)), -totals, row))
-    first = np.ones(len(row), dtype=np.bool_)
-    first[1:] = row[order][1:] != row[order][:-1]
-    return order[first]

@@ -23,6 +23,17 @@ class Grasped(NamedTuple):
     q: Array  # (n, nq), hand closed
     base: npt.NDArray[np.int64]  # (n,)
     grasp: npt.NDArray[np.int64]  # (n,)
+    T_world_tool: Array  # (n, 4, 4), the same for equal grasps
+
+    def take(self, places: npt.NDArray[np.int64]) -> Grasped:
+        """Some of them."""
+        return Grasped(
+            self.end,
+            self.q[places],
+            self.base[places],
+            self.grasp[places],
+            self.T_world_tool[places],
+        )
 
 
 class ScoreTerm(Protocol):
@@ -56,3 +67,8 @@ class RowCache:
             computed = compute(np.fromiter(new.values(), np.int64, len(new)))
             self._rows.update(zip(new, computed, strict=True))
         return np.array([self._rows[k] for k in keys])
+
+
+def row_keys(rows: Array) -> list[bytes]:
+    """Hashable keys of the rows of an array (n, d)."""
+    return [row.tobytes() for row in np.ascontiguousarray(rows)]

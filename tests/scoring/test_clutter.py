@@ -14,16 +14,18 @@ from mmplan.collision import CollisionWorld
 from mmplan.problem import Obstacle, Problem
 from mmplan.robot import Robot
 from mmplan.scoring import End, Grasped, ScoreFunction
-from mmplan.scoring.clutter import Clutter, LinkWeights
+from mmplan.scoring.clutter import Clutter
+from mmplan.scoring.link_weights import LinkWeights
 from mmplan.shapes import Array, Sphere
 from tests.honest import shift
 from tests.scoring.conftest import Evaluated
 from tests.tabletop import two_tasks
 
 
-def grasped(end: End, q: Array) -> Grasped:
+def grasped(robot: Robot, end: End, q: Array) -> Grasped:
     """Configurations (n, nq) that have neither base nor grasp in common."""
-    return Grasped(end, q, np.arange(len(q)), np.arange(len(q)))
+    T_world_tool = np.array([robot.tool_pose(row) for row in q])
+    return Grasped(end, q, np.arange(len(q)), np.arange(len(q)), T_world_tool)
 
 
 def clutter_of(problem: Problem, *, without: str | None = None) -> Clutter:
@@ -89,7 +91,7 @@ def test_c_is_the_weighted_sum_over_links(
         ]
     )
     np.testing.assert_allclose(
-        clutter(grasped(evaluated.end, q)), expected, rtol=0, atol=1e-9
+        clutter(grasped(world.robot, evaluated.end, q)), expected, rtol=0, atol=1e-9
     )
 
 
@@ -121,9 +123,9 @@ def test_the_ground_is_no_obstacle_for_the_base_but_for_the_arm() -> None:
         problem, obstacles=tuple(o for o in problem.obstacles if not o.ground)
     )
     with_ground, without = (clutter_of(p) for p in (problem, bare))
-    change = without.distances(grasped(End.START, q)) - with_ground.distances(
-        grasped(End.START, q)
-    )
+    change = without.distances(
+        grasped(problem.robot, End.START, q)
+    ) - with_ground.distances(grasped(problem.robot, End.START, q))
     base = with_ground.links.index("base")
     assert change[0, base] == 0.0
     assert np.delete(change[0], base).max() > 0.0
@@ -133,9 +135,11 @@ def test_objects_that_stand_count_and_the_one_in_the_hand_does_not() -> None:
     problem = two_tasks()
     q = problem.q_start[None].copy()
     q[:, problem.robot.base.indices] = -0.2, 0.5  # beside the cup
-    all_stand = clutter_of(problem)(grasped(End.START, q))
-    no_cup = clutter_of(problem, without="cup")(grasped(End.START, q))
-    no_bottle = clutter_of(problem, without="bottle")(grasped(End.START, q))
+    all_stand = clutter_of(problem)(grasped(problem.robot, End.START, q))
+    no_cup = clutter_of(problem, without="cup")(grasped(problem.robot, End.START, q))
+    no_bottle = clutter_of(problem, without="bottle")(
+        grasped(problem.robot, End.START, q)
+    )
     assert all_stand < no_cup
     assert all_stand <= no_bottle
 
@@ -146,8 +150,8 @@ def test_links_without_any_obstacle_add_nothing() -> None:
     empty = replace(problem, obstacles=(), objects=())
     only_ground = replace(problem, obstacles=ground, objects=())
     q = problem.q_start[None]
-    assert clutter_of(empty)(grasped(End.START, q)) == [0.0]
-    by_link = clutter_of(only_ground).by_link(grasped(End.START, q))
+    assert clutter_of(empty)(grasped(problem.robot, End.START, q)) == [0.0]
+    by_link = clutter_of(only_ground).by_link(grasped(problem.robot, End.START, q))
     assert np.isfinite(by_link).all()
     assert by_link[0, clutter_of(only_ground).links.index("base")] == 0.0
     assert by_link.sum() > 0.0
@@ -161,6 +165,6 @@ def test_clutter_grows_as_the_only_obstacle_moves_away(away: float) -> None:
     def at(x: float) -> Array:
         ball = Obstacle("ball", Sphere(0.1), shift(x, 0.0, 0.8))
         alone = replace(problem, obstacles=(ball,), objects=())
-        return clutter_of(alone)(grasped(End.START, q))
+        return clutter_of(alone)(grasped(problem.robot, End.START, q))
 
     assert at(1.0) < at(1.0 + away)

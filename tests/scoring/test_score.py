@@ -57,7 +57,8 @@ def worth(score: ScoreFunction, end: End, q: Array) -> Array:
     name, robot = score.task.object, score.problem.robot
     clutter = Clutter(robot, {e: w.without(name) for e, w in score.worlds.items()})
     each = np.arange(len(q))
-    C = clutter(Grasped(end, q, each, each))
+    T_world_tool = np.array([robot.tool_pose(row) for row in q])
+    C = clutter(Grasped(end, q, each, each, T_world_tool))
     return np.stack([np.ones(len(q)), manipulability(robot, q), C], axis=1)
 
 
