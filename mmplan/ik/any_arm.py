@@ -129,6 +129,7 @@ def _redundant(
         form=held.found.form,
         front=held.front,
         held=values,
+        deviation=held.found.deviation,
         most=settings.solutions,
         rescue=rescue,
         explanation=f"closed form at {len(values)} samples of {names}: {reason}",
@@ -140,7 +141,5 @@ def _samples(held: Chain, settings: IkSettings) -> Array:
     count = settings.samples * settings.lift_samples ** (len(held) - 1)
     spread = lattice(count, len(held))
     spread[:, -1] = (np.arange(count) + 0.5) / count
-    endless = np.isinf(held.upper)
-    lower = np.where(endless, -np.pi, held.lower)
-    upper = np.where(endless, np.pi, held.upper)
+    lower, upper = held.ranges
     return lower + (upper - lower) * spread

@@ -17,9 +17,6 @@ from mmplan.shapes import Array
 
 Index = npt.NDArray[np.intp]
 
-# How far (rad or m) a joint may be beyond its limits before it is polished.
-_MARGIN = 2e-3
-
 
 class Candidates(NamedTuple):
     """m configurations, each for one of the poses asked for."""
@@ -41,7 +38,7 @@ def join(parts: Sequence[Candidates], joints: int) -> Candidates:
 
 @dataclass(frozen=True, eq=False)
 class Pruning:
-    """Which joint values are worth following up: all, or those near the limits."""
+    """Which values of turning joints are worth following up: those within limits."""
 
     lower: Array  # (k,)
     upper: Array  # (k,)
@@ -52,13 +49,12 @@ class Pruning:
         return Pruning(np.full(joints, -np.inf), np.full(joints, np.inf))
 
     def allows(self, joint: int, angles: Array) -> npt.NDArray[np.bool_]:
-        """Whether some winding of the angles of a revolute joint is near its limits."""
+        """Whether some winding of the angles of a revolute joint is within limits."""
         lower, upper = self.lower[joint], self.upper[joint]
         if upper - lower >= 2 * np.pi:
             return np.ones(angles.shape, dtype=np.bool_)
         wound = nearest_winding(angles, lower, upper)
-        inside: npt.NDArray[np.bool_] = wound >= lower - _MARGIN
-        inside &= wound <= upper + _MARGIN
+        inside: npt.NDArray[np.bool_] = (wound >= lower) & (wound <= upper)
         return inside
 
     def split(self, joint: int, angles: Angles) -> tuple[Index, Array]:

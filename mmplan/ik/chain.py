@@ -55,6 +55,16 @@ class Chain:
             upper=self.upper[index],
         )
 
+    @cached_property
+    def ranges(self) -> tuple[Array, Array]:
+        """The ends (k,) of each joint's range, of a turn at most where it turns."""
+        limited = np.isfinite(self.upper)
+        lower = np.where(limited, self.lower, -np.pi)
+        upper = np.where(limited, self.upper, np.pi)
+        middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
+        half = np.where(self.prismatic, half, np.minimum(half, np.pi))
+        return read_only(middle - half), read_only(middle + half)
+
     def forward(self, q: Array) -> Poses:
         """The poses of the tool at q (k, m)."""
         return self._run(q)[0]

@@ -77,10 +77,9 @@ class Numeric:
     @cached_property
     def _table(self) -> Array:
         """Configurations (k, table), spread evenly within the limits."""
-        endless = np.isinf(self.chain.upper)
-        lower = np.where(endless, -np.pi, self.chain.lower)[:, None]
-        upper = np.where(endless, np.pi, self.chain.upper)[:, None]
-        table: Array = lower + (upper - lower) * lattice(self.table, len(self.chain)).T
+        lower, upper = (end[:, None] for end in self.chain.ranges)
+        spread = lattice(self.table, len(self.chain)).T
+        table: Array = lower + (upper - lower) * spread
         return table
 
     @cached_property
@@ -106,7 +105,7 @@ def descend(
             break
         now = q[:, rows]
         free = _free(J[:, :, rows], miss[:, rows], now <= lower, now >= upper)
-        scale = size[rows] ** 2 * damping[rows] + 1e-18
+        scale = size[rows] ** 2 * damping[rows]
         moved = now + damped_steps(J[:, :, rows] * free, miss[:, rows], scale)
         moved = np.clip(moved, lower, upper)
         poses, J_new = chain.jacobian(moved)

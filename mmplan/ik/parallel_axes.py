@@ -12,7 +12,7 @@ import numpy as np
 
 from mmplan.ik.branches import Candidates, Pruning
 from mmplan.ik.poses import Poses
-from mmplan.ik.rotation import along, dot, rotate
+from mmplan.ik.rotation import along, dot, rotate, turn_terms
 from mmplan.ik.subproblems import subproblem_1, subproblem_3, subproblem_4
 from mmplan.ik.wrist import Wrist
 from mmplan.shapes import Array
@@ -40,11 +40,13 @@ class ParallelAxes:
         height = along(self.axes[1], centre - p1)
         first = subproblem_4(-self.axes[0], from_1, normal, height, self.slack)
         case, q1 = pruning.split(0, first)
-        images = rotate(-self.axes[0], q1, self.wrist.images(R)[:, :, case])
-        found = self.wrist.solve(images, pruning, (4, 5), self.slack)
-        case, q1 = case[found.case], q1[found.case]
         seen = p1 + rotate(-self.axes[0], q1, from_1[:, case])
-        more, q234 = self._plane(seen, found.first, pruning)
+        images = rotate(-self.axes[0], q1, self.wrist.images(R)[:, :, case])
+        found = self.wrist.solve(
+            images, pruning, lambda aligned: self._easy(seen[:, aligned]), self.slack
+        )
+        case, q1 = case[found.case], q1[found.case]
+        more, q234 = self._plane(seen[:, found.case], found.first, pruning)
         rest = np.array([found.middle, found.last])[:, more]
         return Candidates(case[more], np.concatenate([q1[None, more], q234, rest]))
 
@@ -62,3 +64,21 @@ class ParallelAxes:
         q4 = (turn[case] - q2 - (second @ third) * q3) * (second @ fourth)
         keep = pruning.allows(1, q2) & pruning.allows(3, q4)
         return case[keep], np.array([q2, q3, q4])[:, keep]
+
+    def _easy(self, centre: Array) -> Array:
+        """Sums of the angles of joints 2 to 4 for which the centre is in reach, (m,).
+
+        Those with the elbow most nearly at a right angle.
+        """
+        _, p2, p3, p4, _, c = self.points[:, :, None]
+        second = self.axes[1]
+        side = along(second, p4 - p2) ** 2  # along the axes
+        right = side + _across(second, p3 - p2) + _across(second, p4 - p3)
+        turns = subproblem_3(second, c - p4, centre - p2, right, self.slack)
+        first: Array = turns.values[0]
+        return first
+
+
+def _across(axis: Array, vector: Array) -> Array:
+    """The squared length (1,) of a vector (3, 1) across an axis."""
+    return turn_terms(axis, vector, vector)[1]

@@ -20,6 +20,8 @@ from mmplan.shapes import Array
 REACHED = 1e-9
 _EXACT = 1e-10
 _STEPS = 8
+# The least damping, relative to the matrix: above rounding, so that none is singular.
+_REGULAR = 1e-15
 # Solutions nearer to each other than this (rad or m) are one.
 _SAME = 1e-6
 
@@ -42,14 +44,22 @@ def misses(found: Poses, wanted: Poses) -> Array:
 def damped_steps(J: Array, miss: Array, damping: Array) -> Array:
     """Steps (k, m) from Jacobians (6, k, m) and misses (6, m), damped by (m,).
 
-    The least squares of Levenberg and Marquardt: J^T (J J^T + damping I)^-1 miss.
+    The least squares of Levenberg and Marquardt, J^T (J J^T + damping I)^-1 miss, or
+    the same as (J^T J + damping I)^-1 J^T miss where that is smaller.
     """
     J = J.transpose(2, 0, 1)  # (m, 6, k)
-    square = J @ J.transpose(0, 2, 1)
-    square[:, range(6), range(6)] += damping[:, None]
-    solved = np.linalg.solve(square, miss.T[:, :, None])
-    steps: Array = (J.transpose(0, 2, 1) @ solved)[:, :, 0].T
-    return steps
+    Jt = J.transpose(0, 2, 1)
+    wide = J.shape[2] >= 6
+    square = J @ Jt if wide else Jt @ J
+    diagonal = np.einsum("mii->mi", square)  # a view
+    diagonal += (damping + _REGULAR * diagonal.sum(axis=1))[:, None]
+    target = miss.T[:, :, None]
+    if wide:
+        steps = Jt @ np.linalg.solve(square, target)
+    else:
+        steps = np.linalg.solve(square, Jt @ target)
+    columns: Array = steps[:, :, 0].T
+    return columns
 
 
 def polish(chain: Chain, candidates: Candidates, wanted: Poses) -> Candidates:
@@ -69,7 +79,7 @@ def polish(chain: Chain, candidates: Candidates, wanted: Poses) -> Candidates:
         poses, J = chain.jacobian(q[:, rows])
         miss = misses(poses, goal)
         error = np.sqrt((miss**2).sum(axis=0))
-        q[:, rows] += damped_steps(J, miss, error**2 + 1e-18)
+        q[:, rows] += damped_steps(J, miss, error**2)
         size[rows] = _sizes(chain, q[:, rows], goal)
         rows = rows[size[rows] > _EXACT]
     kept = Candidates(candidates.pose, q).take(size <= REACHED)

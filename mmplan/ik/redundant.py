@@ -23,7 +23,11 @@ from mmplan.ik.six_joints import ClosedForm
 from mmplan.shapes import Array
 
 # How many poses times samples are solved at once.
-_CHUNK = 1 << 15
+_CHUNK = 1 << 13
+# How far (rad) a joint may be beyond its limits before it is polished: so much, and
+# so many times the deviation.
+_ROUNDING = 1e-10
+_LEVERAGE = 20.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +43,7 @@ class Redundant:
     form: ClosedForm
     front: int
     held: Array
+    deviation: float  # how far (m or rad) the form is from the chain
     most: int
     rescue: Numeric
     explanation: str
@@ -103,8 +108,9 @@ class Redundant:
 
     @cached_property
     def _pruning(self) -> Pruning:
-        six = slice(self.front, self.front + 6)
-        return Pruning(self.chain.lower[six], self.chain.upper[six])
+        six = self.chain.part(range(self.front, self.front + 6))
+        margin = _ROUNDING + _LEVERAGE * self.deviation
+        return Pruning(six.lower - margin, six.upper + margin)
 
 
 def _motion(chain: Chain, q: Array) -> Poses:

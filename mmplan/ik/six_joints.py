@@ -68,7 +68,7 @@ def closed_form(chain: Chain, number: int = 1) -> Found | None:
     if len(chain) != 6 or chain.prismatic.any():
         return None
     numbers = tuple(range(number, number + 6))
-    forward = _Lines(chain.axes, chain.points, _middles(chain), numbers)
+    forward = _Lines(chain.axes, chain.points, np.mean(chain.ranges, axis=0), numbers)
     # Seen from the tool each joint turns the other way.
     backward = _Lines(
         -chain.axes[::-1],
@@ -99,14 +99,6 @@ class _Lines(NamedTuple):
         return f"{', '.join(map(str, most))} and {last}"
 
 
-def _middles(chain: Chain) -> Array:
-    """The middle of each joint's limits, 0 where it has none, (k,)."""
-    limited = np.isfinite(chain.upper)
-    ends = np.where(limited, [chain.lower, chain.upper], 0.0)
-    middles: Array = ends.mean(axis=0)
-    return middles
-
-
 def _closed_forms(lines: _Lines) -> Iterator[Found]:
     found = _three_parallel(lines)
     if found is not None:
@@ -119,12 +111,13 @@ def _spherical_wrists(lines: _Lines) -> Iterator[Found]:
     centre = meeting(list(axes[3:]), list(points[3:]))
     if centre is None:
         return
-    wrist = Wrist(axes[3], axes[4], axes[5], float(lines.middles[3]))
+    wrist = Wrist(axes[3], axes[4], axes[5])
+    idle = float(lines.middles[3])
     name = f"spherical wrist (axes {lines.called(3, 4, 5)} meet)"
     for placing, pair, reason, shifted, deviation in _placings(lines):
         total = deviation + centre.deviation
         shoulder = Shoulder(*shifted, centre.point, _ROUNDING + _LEVERAGE * total)
-        form = SphericalWrist(shoulder, placing, wrist)
+        form = SphericalWrist(shoulder, placing, wrist, idle)
         yield Found(form, f"{name}, axes {lines.called(*pair)} {reason}", total)
 
 
@@ -160,8 +153,7 @@ def _three_parallel(lines: _Lines) -> Found | None:
     exact_axes = _aligned(axes, (1, 2, 3))
     exact_points = points.copy()
     exact_points[4:] = centre.point
-    turn = sum(np.sign(axes[1] @ axes[i]) * lines.middles[i] for i in (1, 2, 3))
-    wrist = Wrist(exact_axes[1], exact_axes[4], exact_axes[5], float(turn))
+    wrist = Wrist(exact_axes[1], exact_axes[4], exact_axes[5])
     form = ParallelAxes(
         exact_axes, exact_points, wrist, _ROUNDING + _LEVERAGE * deviation
     )

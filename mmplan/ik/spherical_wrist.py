@@ -53,6 +53,7 @@ class SphericalWrist:
     shoulder: Shoulder
     placing: Placing
     wrist: Wrist
+    idle: float  # rad, joint 4 where it and joint 6 turn about one axis
 
     def solve(self, displacement: Poses, pruning: Pruning) -> Candidates:
         """The joints (6, m) whose motion from 0 moves the tool as given."""
@@ -62,7 +63,12 @@ class SphericalWrist:
         images = self.wrist.images(R)[:, :, case]
         for axis, angle in zip(self.shoulder.axes, q, strict=True):
             images = rotate(-axis, angle, images)
-        found = self.wrist.solve(images, pruning, (4, 5), self.shoulder.slack)
+        found = self.wrist.solve(
+            images,
+            pruning,
+            lambda aligned: np.full(len(aligned), self.idle),
+            self.shoulder.slack,
+        )
         keep = pruning.allows(3, found.first)
         turns = np.array([found.first, found.middle, found.last])
         joints = np.concatenate([q[:, found.case], turns])

@@ -1,12 +1,12 @@
-"""The last three joints of an arm, from the rotation that is left for them."""
+"""The last three turns of an arm, from the rotation that is left for them."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from mmplan.ik.branches import Index, Pruning
 from mmplan.ik.rotation import along, rotate, turn_terms
@@ -32,14 +32,15 @@ class WristAngles(NamedTuple):
 class Wrist:
     """Three turns about fixed axes (3,) that make up a given rotation.
 
+    The last two are joints 5 and 6 of an arm.
+
     Where the first and last axes are one only the sum of their angles matters: the
-    first stands at `idle` (rad), and the last takes the rest.
+    first stands at an idle angle, and the last takes the rest.
     """
 
     first: Array
     middle: Array
     last: Array
-    idle: float
 
     @property
     def across(self) -> Array:
@@ -56,24 +57,29 @@ class Wrist:
         return images
 
     def solve(
-        self, images: Array, pruning: Pruning, joints: tuple[int, int], slack: float
+        self,
+        images: Array,
+        pruning: Pruning,
+        idle: Callable[[Index], Array],
+        slack: float,
     ) -> WristAngles:
         """The angles for m rotations R, given `images` (3, 2, m): of last and across.
 
-        `joints` are the numbers of the middle and the last joint.
+        `idle` tells idle angles, rad, for cases of these numbers.
         """
-        case, middle = pruning.split(joints[0], self._middle(images[:, 0], slack))
+        case, middle = pruning.split(4, self._middle(images[:, 0], slack))
         last, across = images[:, 0, case], images[:, 1, case]
         turned = rotate(self.middle, middle, self.last[:, None])
         first = subproblem_1(self.first, turned, last)
-        first[self._aligned(last)] = self.idle
+        aligned = np.flatnonzero(self._sine(last) < _ALIGNED)
+        first[aligned] = idle(case[aligned])
         rest = rotate(-self.first, first, np.stack([last, across], axis=1))
         # Anew from what is left, which is exact where the first angle is not: near
         # the alignment of the axes the cosine of the middle one says little.
         middle = subproblem_1(self.middle, self.last[:, None], rest[:, 0])
         rest = rotate(-self.middle, middle, rest[:, 1])
         angle = subproblem_1(self.last, self.across[:, None], rest)
-        keep = pruning.allows(joints[1], angle)
+        keep = pruning.allows(5, angle)
         return WristAngles(case[keep], first[keep], middle[keep], angle[keep])
 
     def _middle(self, last: Array, slack: float) -> Angles:
@@ -101,7 +107,3 @@ class Wrist:
         _, square = turn_terms(self.first, last, last)
         sine: Array = np.sqrt(np.maximum(square, 0.0))
         return sine
-
-    def _aligned(self, last: Array) -> npt.NDArray[np.bool_]:
-        aligned: npt.NDArray[np.bool_] = self._sine(last) < _ALIGNED
-        return aligned
