@@ -9,13 +9,13 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from benchmarks.score_scales import score_scales
 from mmplan.assets import robot_names, robots_folder
 from mmplan.kinematics import joint_placements
 from mmplan.robot import Robot
 from mmplan.robot_build import build_robot
 from mmplan.robot_file import RobotDescription, load_robot_description
 from mmplan.robot_measures import base_radius, reach
+from mmplan.robot_setup.score_scales import score_scales
 from mmplan.shapes import Array
 
 ROBOTS = robot_names()
@@ -174,32 +174,35 @@ def gap(
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_the_fingers_meet_at_the_tool_frame_along_y(name: str) -> None:
+    """They are on either side of it, close along y, and meet at its origin."""
     robot = loaded(name)
-    sides = {state: _finger_sides(robot, state) for state in ("open", "closed")}
-    for gaps, points in sides.values():
-        assert min(points[:, 1]) < 0 < max(points[:, 1]) or max(gaps) < 3e-3
-    gaps, points = sides["open"]
-    nearest = points[np.argsort(gaps)[:2]]
-    assert nearest[0, 1] * nearest[1, 1] < 0, "a finger on either side"
-    np.testing.assert_allclose(nearest[:, [0, 2]], 0, atol=5e-3)
-    np.testing.assert_allclose(nearest[0, 1], -nearest[1, 1], atol=2e-3)
-    assert min(gaps) > 0.02
-    assert sorted(sides["closed"][0])[1] < 3e-3
+    gaps, points = _nearest_finger_bodies(robot, share_closed=0.0)
+    assert gaps.min() > 0.02
+    mirrored = points[1] * (1, -1, 1)
+    np.testing.assert_allclose(points[0], mirrored, atol=2e-3)
+    assert abs(points[0, 1]) > 0.02
+    gaps, points = _nearest_finger_bodies(robot, share_closed=0.9)
+    np.testing.assert_allclose(points[:, [0, 2]], 0, atol=3e-3)
+    assert points[0, 1] * points[1, 1] < 0
+    assert gaps.max() < 0.01
+    gaps, _ = _nearest_finger_bodies(robot, share_closed=1.0)
+    assert gaps.max() < 1e-3
 
 
-def _finger_sides(robot: Robot, state: str) -> tuple[Array, Array]:
-    """Of each finger's bodies the gap to the tool's origin and the nearest point."""
+def _nearest_finger_bodies(robot: Robot, share_closed: float) -> tuple[Array, Array]:
+    """Of the two nearest: gaps to the tool's origin, nearest points in its frame."""
     q = robot.q_neutral.copy()
-    q[robot.hand.indices] = robot.hand_open if state == "open" else robot.hand_closed
+    stroke = robot.hand_closed - robot.hand_open
+    q[robot.hand.indices] = robot.hand_open + share_closed * stroke
     T_world_tool = pin.SE3(robot.tool_pose(q))
-    origin = coal.Sphere(1e-6)
     found = [
-        gap(origin, T_world_tool, body.geometry, T)
+        gap(coal.Sphere(1e-6), T_world_tool, body.geometry, T)
         for body, T in placed_bodies(robot, q)
         if robot.kind_of(body) == "finger"
     ]
-    points = np.array([T_world_tool.actInv(point) for _, point in found])
-    return np.array([distance for distance, _ in found]), points
+    nearest = sorted(found, key=lambda item: item[0])[:2]
+    points = [T_world_tool.actInv(point) for _, point in nearest]
+    return np.array([distance for distance, _ in nearest]), np.array(points)
 
 
 @pytest.mark.parametrize("name", ROBOTS)
@@ -238,7 +241,9 @@ def test_the_bases_radius_encloses_it(name: str) -> None:
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_score_scales_are_those_of_the_robot(name: str) -> None:
-    found, computed = loaded(name).score_scales, score_scales(loaded(name))
+    robot = loaded(name)
+    found = robot.score_scales
+    computed = score_scales(robot, robot.configurations["home"])
     assert found.manipulability == pytest.approx(computed.manipulability, rel=0.01)
     assert found.clutter == pytest.approx(computed.clutter, rel=0.01)
 

@@ -19,6 +19,7 @@ from mmplan.files.section import (
 from mmplan.files.shape_sections import RoundSection, SphereSection
 from mmplan.files.urdf_composition import BASE_JOINTS
 
+JointType: TypeAlias = Literal["revolute", "prismatic", "continuous", "fixed"]
 Joints: TypeAlias = Annotated[tuple[str, ...], Field(min_length=1)]
 
 

@@ -12,6 +12,7 @@ from mmplan.files.robot_parts import (
     Collision,
     HandSection,
     IkSection,
+    JointType,
     RobotFile,
     Tool,
 )
@@ -66,6 +67,8 @@ class RobotSection(Section):
     """Horizontal distance from the base's centre to the tool, arm stretched, m."""
     ik: IkSection
     """Inverse kinematics of the arm."""
+    types: dict[str, JointType] = Field(default_factory=dict)
+    """Types of joints instead of those of the URDF."""
     parked: dict[str, float] = Field(default_factory=dict)
     """Where joints of no group are held, m or rad; others at 0, or nearest to it."""
     position: dict[str, JointInterval] = Field(default_factory=dict)

@@ -11,6 +11,7 @@ from mmplan import assets
 from mmplan.exceptions import Diagnostic, InputError
 from mmplan.files.document import Document, Fault, KeyPath
 from mmplan.files.located_xml import read_xml
+from mmplan.files.suggestions import unknown
 from mmplan.files.urdf import Urdf, mesh_files, urdf_facts
 from mmplan.files.urdf_faults import urdf_faults
 from mmplan.files.urdf_meshes import find_mesh
@@ -69,10 +70,15 @@ def robot_sources(document: Document) -> tuple[RobotSources, tuple[Fault, ...]]:
     urdf = _urdf(document, ("urdf",), faults, within)
     hand = _urdf(document, ("hand", "urdf"), faults, within)
     srdf = _location(document, ("srdf",), faults)
+    roots = [file.root for file in (urdf, hand) if file is not None]
+    joints = [j.get("name", "") for root in roots for j in root.findall("joint")]
+    for name in document.keys("types"):
+        if name not in joints and urdf is not None:
+            message = unknown("joint", name, joints)
+            faults.append(Fault(("types", name), message, at_key=True))
     path = srdf[0] if srdf else None
     pieces = _pieces(document, faults)
-    sources = RobotSources(urdf, hand, path, pieces, tuple(within))
-    return sources, tuple(faults)
+    return RobotSources(urdf, hand, path, pieces, tuple(within)), tuple(faults)
 
 
 def _urdf(
@@ -87,6 +93,7 @@ def _urdf(
     except InputError as error:
         within += error.diagnostics
         return None
+    _change_types(xml.root, document)
     if found := urdf_faults(xml, package_dirs):
         within += found
         return None
@@ -104,6 +111,14 @@ def _leave_out_unseen(
             name = "" if mesh is None else mesh.get("filename", "")
             if name and find_mesh(name, path, package_dirs) is None:
                 link.remove(visual)
+
+
+def _change_types(root: ET.Element, document: Document) -> None:
+    """Give joints the types that the robot.yaml says."""
+    for joint in root.findall("joint"):
+        kind = document.get("types", joint.get("name", ""))
+        if isinstance(kind, str):
+            joint.set("type", kind)
 
 
 def pieces_folder(robot: Path, link: str) -> Path:

@@ -14,6 +14,7 @@ from pathlib import Path
 from xml.etree import ElementTree as ET
 
 from mmplan.files import urdf_edit as edit
+from mmplan.files.body_inertia import inertial
 from mmplan.files.rigid_pose import RigidPose
 from mmplan.files.urdf import UrdfError, UrdfJoint, urdf_facts
 
@@ -148,6 +149,8 @@ def _add_base(root: ET.Element, parts: Composition) -> None:
             edit.limit(joint, lower=-_FLOOR, upper=_FLOOR)
     edit.add_joint(root, f"{BASE_LINK}_mount", "fixed", BASE_LINK, top, parts.mount)
     base = edit.links_by_name(root)[BASE_LINK]
+    if parts.base_bodies:
+        base.append(inertial([(b.shape, b.pose) for b in parts.base_bodies]))
     for kind in ("visual", "collision"):
         _add_bodies(base, kind, parts.base_bodies)
 
