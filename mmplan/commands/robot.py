@@ -11,6 +11,8 @@ from mmplan.commands.arguments import add_json
 from mmplan.commands.results import SOLVED, print_json
 from mmplan.exceptions import InputError
 
+BASE_TYPES = ("xy", "planar", "diff_drive", "reeds_shepp", "fixed")
+
 if TYPE_CHECKING:
     from mmplan.robot_file import RobotDescription
 
@@ -21,6 +23,7 @@ def add(commands: Any) -> None:
     robot = commands.add_parser("robot", help=text, description=text)
     actions = robot.add_subparsers(required=True, metavar="ACTION")
     _add_inspect(actions)
+    _add_import(actions)
     _add_urdf(actions)
 
 
@@ -34,6 +37,62 @@ def _add_inspect(actions: Any) -> None:
     _add_robot(inspect)
     add_json(inspect)
     inspect.set_defaults(run=_inspect)
+
+
+def _add_import(actions: Any) -> None:
+    text = (
+        "make a robot.yaml of a URDF; groups, tool frame, pairs of links that need no "
+        "check, resting places and more are guessed or measured, and said"
+    )
+    command = actions.add_parser("import", help="make one of a URDF", description=text)
+    command.add_argument("urdf", type=Path, help="a URDF file")
+    command.add_argument(
+        "--base", required=True, choices=BASE_TYPES, help="how the base moves"
+    )
+    command.add_argument(
+        "--tip",
+        required=True,
+        metavar="LINK",
+        help="link between the fingers, or at the flange: the arm's last",
+    )
+    command.add_argument(
+        "-o", "--output", type=Path, required=True, help="folder to write"
+    )
+    command.add_argument("--name", help="default: the name of the folder")
+    command.add_argument(
+        "--arm", type=_names, default=(), metavar="JOINTS", help="instead of the guess"
+    )
+    command.add_argument(
+        "--hand",
+        default="",
+        metavar="JOINTS|FILE",
+        help="joints of the fingers, instead of the guess; or the URDF of a hand that "
+        "is fixed to the tip",
+    )
+    command.add_argument("--srdf", type=Path, help="for its disabled pairs")
+    command.add_argument(
+        "--package-dir",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FOLDER",
+        help="where package:// names are looked up, too; may be given several times",
+    )
+    command.add_argument(
+        "--pedestal",
+        type=float,
+        nargs=2,
+        metavar=("RADIUS", "HEIGHT"),
+        help="cylinder that the root stands on, m; 0 0 for none",
+    )
+    add_json(command)
+    quiet = "no progress and no result on the terminal"
+    command.add_argument("--quiet", action="store_true", help=quiet)
+    command.set_defaults(run=_import)
+
+
+def _names(text: str) -> tuple[str, ...]:
+    return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
 def _add_urdf(actions: Any) -> None:
@@ -71,6 +130,32 @@ def _inspect(options: argparse.Namespace) -> int:
         print_json(as_json(inspection, found))
     else:
         show(*report(inspection, found))
+    return SOLVED
+
+
+def _import(options: argparse.Namespace) -> int:
+    from mmplan.robot_setup.importing import Wishes, import_robot
+    from mmplan.terminal import show
+
+    hand = (
+        Path(options.hand) if options.hand.endswith(".urdf") else _names(options.hand)
+    )
+    wishes = Wishes(
+        base=options.base,
+        tip=options.tip,
+        name=options.name or options.output.name,
+        arm=options.arm,
+        hand=hand,
+        srdf=options.srdf,
+        package_dirs=tuple(options.package_dir),
+        pedestal=options.pedestal and tuple(options.pedestal),
+    )
+    imported = import_robot(options.urdf, wishes, options.output)
+    if options.json:
+        print_json({"robot": str(imported.path), "notes": imported.notes})
+    elif not options.quiet:
+        show(f"written to {imported.path}; to be checked:")
+        show(*(f"- {note}" for note in imported.notes))
     return SOLVED
 
 
