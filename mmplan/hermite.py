@@ -70,6 +70,12 @@ class HermiteCurve:
         velocities: Array = c[1] + s * (2.0 * c[2] + 3.0 * s * c[3])
         return velocities
 
+    def accelerations(self, t: Array) -> Array:
+        """Joint accelerations (k, joints) at times (k,); at a sample the later ones."""
+        c, s = self._at(t)
+        accelerations: Array = 2.0 * c[2] + 6.0 * s * c[3]
+        return accelerations
+
     def position_extremes(self) -> Extremes:
         """Exact extremes of the positions on every piece, (pieces, joints)."""
         _, c1, c2, c3 = self._c
@@ -119,6 +125,11 @@ class HermiteCurve:
         _, _, c2, c3 = self._c
         start = 2.0 * c2
         return _extremes([start, start + 6.0 * c3 * np.diff(self.times)[:, None]])
+
+    def jerks(self) -> Array:
+        """The third derivatives, constant on every piece, (pieces, joints)."""
+        jerks: Array = 6.0 * self._c[3]
+        return jerks
 
     def _at(self, t: Array) -> tuple[Array, Array]:
         piece = self.piece_of(t)

@@ -15,6 +15,7 @@ from mmplan.exceptions import InputError
 from mmplan.files.document import Document, Fault, KeyPath
 from mmplan.problem import Problem
 from mmplan.shapes import Array
+from mmplan.zones import base_clearances
 
 _MILLIMETRES = 1000.0
 
@@ -30,7 +31,11 @@ def check_geometry(problem: Problem, document: Document) -> None:
         world = CollisionWorld.of_problem(problem)
     except InputError:  # of the first shape only
         raise document.error(_shape_faults(problem)) from None
-    faults = [*_start_faults(problem, world), *_object_faults(problem, world)]
+    faults = [
+        *_zone_faults(problem),
+        *_start_faults(problem, world),
+        *_object_faults(problem, world),
+    ]
     if faults:
         raise document.error(faults)
 
@@ -46,6 +51,20 @@ def _shape_faults(problem: Problem) -> Iterator[Fault]:
             Scenery.solids_of_object(item)
         except InputError as error:  # noqa: PERF203
             yield Fault(("objects", item.name), str(error))
+
+
+def _zone_faults(problem: Problem) -> Iterator[Fault]:
+    """Forbidden zones that the base starts in."""
+    robot = problem.robot
+    q_base = problem.q_start[None, robot.base.indices]
+    for zone in problem.forbidden if len(robot.base) else ():
+        clearance = float(base_clearances([zone], q_base, robot.base_radius)[0])
+        if clearance < 0.0:
+            yield Fault(
+                ("robot", "start", "base"),
+                f"the robot starts {-clearance:.3g} m deep in {zone.name}; the circle "
+                f"of radius {robot.base_radius:g} m around its base must keep out",
+            )
 
 
 def _start_faults(problem: Problem, world: CollisionWorld) -> Iterator[Fault]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mmplan.files.robot_composition import pose_of
 from mmplan.files.scene_sections import (
     BoundsSection,
     ObjectSection,
@@ -13,12 +14,14 @@ from mmplan.files.scene_sections import (
     SceneSection,
     StartSection,
 )
+from mmplan.fixed_base import hold_base, stand_at
 from mmplan.problem import Object, Obstacle, Problem, Task
 from mmplan.robot import Robot
 from mmplan.robot_build import build_robot
 from mmplan.scene_reader import SceneFile
 from mmplan.scene_values import grasps, pose, shape
 from mmplan.shapes import Array, Fixture, read_only
+from mmplan.zones import Zone
 
 BOUNDS_MARGIN = 1.5  # of the robot's reach, around the start and all poses
 
@@ -30,7 +33,7 @@ def build_problem(scene: SceneFile) -> Problem:
         InputError: The robot's model cannot be built.
     """
     section = scene.section
-    robot = build_robot(scene.robot)
+    robot = _robot(scene)
     return Problem(
         name=section.name,
         robot=robot,
@@ -44,9 +47,23 @@ def build_problem(scene: SceneFile) -> Problem:
         score=section.score.settings(),
         optimizer=section.optimizer.settings(),
         planner=section.planner.settings(),
+        forbidden=tuple(
+            Zone(f"forbidden zone {number}", read_only(zone.corners))
+            for number, zone in enumerate(section.robot.forbidden, start=1)
+        ),
         path=scene.document.path,
         fingerprint=scene.fingerprint(),
     )
+
+
+def _robot(scene: SceneFile) -> Robot:
+    """The robot, at its place if it has no mobile base, or held where it starts."""
+    section, description = scene.section.robot, scene.robot
+    if section.at is not None:
+        description = stand_at(description, pose_of(section.at))
+    if section.base == "fixed" and description.base_joints:
+        description = hold_base(description, section.start.base)
+    return build_robot(description)
 
 
 def _start(robot: Robot, start: StartSection) -> Array:
@@ -54,7 +71,7 @@ def _start(robot: Robot, start: StartSection) -> Array:
     leads = robot.hand.leads
     hand = {"open": robot.hand_open[leads], "closed": robot.hand_closed[leads]}
     q = np.zeros(robot.model.nq)
-    q[robot.base.indices] = start.base
+    q[robot.base.indices] = start.base[: len(robot.base)]
     q[robot.arm.indices] = _named(start.arm, robot.configurations)
     q[robot.hand.indices[leads]] = _named(start.hand, hand)
     return read_only(robot.with_followers(q))
@@ -70,8 +87,12 @@ def _base_bounds(robot: Robot, section: SceneSection) -> Array:
     Where the scene says nothing: the box around the start and all poses, grown by
     `BOUNDS_MARGIN` times the robot's reach.
     """
+    limits = np.stack([robot.base.lower, robot.base.upper], axis=1)
+    if len(limits) == 0:
+        return read_only(limits)
     poses = [o.at for o in section.objects.values()] + [t.to for t in section.tasks]
-    points = np.array([section.robot.start.base, *(p.xyz[:2] for p in poses)])
+    start = section.robot.start.base[:2]
+    points = np.array([start, *(p.xyz[:2] for p in poses)])
     margin = BOUNDS_MARGIN * robot.reach
     bounds = np.stack(
         [points.min(axis=0) - margin, points.max(axis=0) + margin], axis=1
@@ -79,8 +100,8 @@ def _base_bounds(robot: Robot, section: SceneSection) -> Array:
     for axis, given in enumerate(_given(section.robot.bounds)):
         if given is not None:
             bounds[axis] = given
-    limits = np.stack([robot.base.lower, robot.base.upper], axis=1)
-    return read_only(np.clip(bounds, limits[:, :1], limits[:, 1:]))
+    bounds = np.clip(bounds, limits[:2, :1], limits[:2, 1:])
+    return read_only(np.concatenate([bounds, limits[2:]]))
 
 
 def _given(bounds: BoundsSection) -> Sequence[tuple[float, float] | None]:

@@ -40,6 +40,7 @@ def scene_faults(document: Document) -> Iterator[Fault]:
 def start_faults(document: Document, robot: RobotFacts) -> Iterator[Fault]:
     """The faults of the start and of names, given the robot."""
     start: KeyPath = ("robot", "start")
+    yield from _base_faults(document, robot.base)
     named = {"arm": robot.configurations, "hand": HAND_STATES, "base": ()}
     joints = {"arm": robot.arm, "hand": robot.hand, "base": robot.base}
     for group, names in named.items():
@@ -47,13 +48,28 @@ def start_faults(document: Document, robot: RobotFacts) -> Iterator[Fault]:
         value = document.get(*path)
         if isinstance(value, str) and group != "base" and value not in names:
             yield Fault(path, unknown("configuration", value, names))
-        if isinstance(value, tuple):
+        if isinstance(value, tuple) and joints[group]:
             for fault in joint_value_faults(value, joints[group], robot.urdf):
                 yield fault._replace(path=path + fault.path)
     for section in ("obstacles", "objects"):
         for name in set(document.keys(section)) & set(robot.urdf.bodies):
             message = f"'{name}' is the name of a link of the robot; choose another"
             yield Fault((section, name), message, at_key=True)
+
+
+def _base_faults(document: Document, base: Sequence[str]) -> Iterator[Fault]:
+    """A start without the base that the robot has, or with one that it lacks."""
+    start: KeyPath = ("robot", "start")
+    given = document.get(*start, "base")
+    if base and given is None and isinstance(document.get(*start), dict):
+        message = f"missing key 'base': one number for each of {', '.join(base)}"
+        yield Fault(start, message, at_key=True)
+    if not base and given:
+        message = "the robot has no mobile base; robot.at says where it stands"
+        yield Fault((*start, "base"), message)
+    if base and document.get("robot", "at") is not None:
+        message = "goes with robots without a mobile base; robot.start.base says where"
+        yield Fault(("robot", "at"), f"{message} this one starts", at_key=True)
 
 
 def _names_taken_twice(document: Document) -> Iterator[Fault]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 from typing_extensions import Self
 
 from mmplan.files.grasp_sections import GraspSection
 from mmplan.files.pose_section import PoseSection
+from mmplan.files.profile import profile_fault
 from mmplan.files.section import (
     Distance,
     FileName,
@@ -46,8 +47,8 @@ NameOrNumbers: TypeAlias = Annotated[
 class StartSection(Section):
     """Where the robot stands before the first task."""
 
-    base: tuple[Metres, ...]
-    """Position of the base's joints: x and y, m."""
+    base: tuple[Metres, ...] = ()
+    """Positions of the base: x, y (m), heading (rad); none where it has no joints."""
     arm: NameOrNumbers
     """A configuration of the robot file by name, or one number a joint, rad."""
     hand: NameOrNumbers = "open"
@@ -63,13 +64,45 @@ class BoundsSection(Section):
     """Lowest and highest y, m."""
 
 
+class ZoneSection(Section):
+    """A zone of the floor that the base must keep out of: a box or a polygon."""
+
+    box: tuple[Interval, Interval] | None = None
+    """Lowest and highest x, then lowest and highest y, m."""
+    polygon: tuple[tuple[Metres, Metres], ...] | None = None
+    """Corners [x, y] in their order, m; the last is joined to the first."""
+
+    @model_validator(mode="after")
+    def _one_sound_shape(self) -> Self:
+        if (self.box is None) == (self.polygon is None):
+            raise fault("expected one of box and polygon")
+        if self.polygon is not None and (message := profile_fault(self.polygon)):
+            raise fault_at(("polygon",), message)
+        return self
+
+    @property
+    def corners(self) -> tuple[tuple[float, float], ...]:
+        """The corners of either."""
+        if self.polygon is not None:
+            return self.polygon
+        assert self.box is not None, "validated: one shape is given"
+        (x_low, x_high), (y_low, y_high) = self.box
+        return ((x_low, y_low), (x_high, y_low), (x_high, y_high), (x_low, y_high))
+
+
 class RobotSection(Section):
     """Which robot, where it starts, where it may go."""
 
     model: str
     """A robot that is shipped, by name, or the path of a robot.yaml."""
+    base: Literal["fixed"] | None = None
+    """fixed: the base, of whatever type, stays where it starts."""
+    at: PoseSection | None = None
+    """Pose of a robot without a mobile base in the world."""
     start: StartSection
     """Where the robot stands before the first task."""
+    forbidden: tuple[ZoneSection, ...] = ()
+    """Zones of the floor that the circle around the base must keep out of."""
     bounds: BoundsSection = BoundsSection()
     """Where the base may go; around the start and all poses where not given."""
 

@@ -50,9 +50,9 @@ class ShortMotions:
         leaving = self.resting(carrying, self.world.standing[self.task.object])
         lift = self._straight("lift", leaving, q_closed, _UP)
         return [
-            Part("approach", self.world, approach),
-            Part("grasp", touching, grasp),
-            Part("lift", leaving, lift, dict(carrying.attached)),
+            Part("approach", self.world, (approach,)),
+            Part("grasp", touching, (grasp,)),
+            Part("lift", leaving, (lift,), dict(carrying.attached)),
         ]
 
     def place(self, candidate: Candidate, carrying: CollisionWorld) -> list[Part]:
@@ -71,9 +71,9 @@ class ShortMotions:
         back = -self._approach_direction(q_closed)
         retreat = self._straight("retreat", placed, q_open, back)
         return [
-            Part("lower", arriving, lower, dict(carrying.attached)),
-            Part("release", touching, release),
-            Part("retreat", placed, retreat),
+            Part("lower", arriving, (lower,), dict(carrying.attached)),
+            Part("release", touching, (release,)),
+            Part("retreat", placed, (retreat,)),
         ]
 
     def resting(self, world: CollisionWorld, T_world_object: Array) -> CollisionWorld:

@@ -10,17 +10,12 @@ import numpy as np
 from mmplan.candidate import Candidate
 from mmplan.collision import CollisionWorld
 from mmplan.ik.windings import windings
-from mmplan.motion.parts import Blocked, BlockedError, Part
+from mmplan.motion.parts import Blocked, BlockedError, Part, time_part
 from mmplan.motion.short_motions import ShortMotions
+from mmplan.motion.ways import WayFinder
+from mmplan.motion.zoned_world import with_zones
 from mmplan.plan import Segment
-from mmplan.planning import (
-    MovingJoints,
-    motion_limits,
-    plan_path,
-    time_path,
-    transfer_joints,
-    transit_joints,
-)
+from mmplan.planning import motion_limits
 from mmplan.problem import Problem, Task
 from mmplan.shapes import Array
 
@@ -44,6 +39,16 @@ class TaskMotion:
         except BlockedError as error:
             return error.blocked
 
+    def blocked_short(self, candidate: Candidate) -> Blocked | None:
+        """What stands in the way of the short motions alone, no path being planned."""
+        carrying = self.world.attach(self.task.object, candidate.T_tool_object)
+        try:
+            self._short.pick(candidate, carrying)
+            self._short.place(candidate, carrying)
+        except BlockedError as error:
+            return error.blocked
+        return None
+
     @cached_property
     def _short(self) -> ShortMotions:
         return ShortMotions(self.problem, self.task, self.world, self.without_lines)
@@ -61,11 +66,7 @@ class TaskMotion:
         self, pick: list[Part], rng: np.random.Generator
     ) -> tuple[Part, list[Part]]:
         """The way to the pick, and the pick on the winding that it arrives at."""
-        turns = self._turns(pick)
-        start, goals = self.problem.q_start, pick[0].path[0] + turns
-        joints = transit_joints(self.problem)
-        transit, turn = self._search("transit", self.world, start, goals, joints, rng)
-        return transit, [part.turned(turns[turn]) for part in pick]
+        return self._joined("transit", self.world, self.problem.q_start, pick, rng)
 
     def _transfer(
         self,
@@ -83,40 +84,35 @@ class TaskMotion:
             world = self._short.resting(world, self.world.standing[self.task.object])
         if not place[0].moves:
             world = self._short.resting(world, self.task.T_world_goal)
-        turns = self._turns(place)
-        start, goals = pick[-1].path[-1], place[0].path[0] + turns
-        joints = transfer_joints(self.problem)
-        transfer, turn = self._search("transfer", world, start, goals, joints, rng)
-        return transfer, [part.turned(turns[turn]) for part in place]
+        return self._joined("transfer", world, pick[-1].path[-1], place, rng)
 
-    def _search(
+    def _joined(
         self,
         name: str,
         world: CollisionWorld,
         q_start: Array,
-        q_goals: Array,
-        joints: MovingJoints,
+        parts: list[Part],
         rng: np.random.Generator,
-    ) -> tuple[Part, int]:
-        """A path to one of several goals, and which goal it is.
+    ) -> tuple[Part, list[Part]]:
+        """The way from q_start (nq,) to where parts begin, and these as it meets them.
 
-        It keeps the clearance wanted from all that its ends keep it from.
+        It keeps the clearance wanted from all that its ends keep it from, and the
+        fingers still where an object is carried.
         """
-        settings = self.problem.planner
-        keeping = world.keeping(settings.clearance, q_start, *q_goals)
-        result = plan_path(keeping, q_start, q_goals, joints, settings, rng)
-        if result.path is None or result.goal is None:
-            raise BlockedError(name, result.message)
-        return Part(name, keeping, result.path, dict(world.attached)), result.goal
+        turns = self._turns(parts)
+        q_goals = parts[0].path[0] + turns
+        keeping = world.keeping(self.problem.planner.clearance, q_start, *q_goals)
+        zoned = with_zones(keeping, self.problem, q_start, q_goals[0])
+        finder = WayFinder(self.problem, name, zoned, hand=not world.attached)
+        way = finder.find(q_start, q_goals, rng)
+        turn = turns[way.goal] + way.turns
+        part = Part(name, zoned, way.legs, dict(world.attached))
+        return part, [part.turned(turn) for part in parts]
 
     def _timed(self, part: Part) -> Segment:
         """The segment of a part, as fast as the robot's limits allow."""
         limits = motion_limits(self.problem.robot)
-        resolution = self.problem.planner.resolution
-        result = time_path(part.world, part.path, limits, resolution)
-        if result.motion is None:
-            raise BlockedError(part.name, result.message)
-        motion = result.motion
+        motion = time_part(part, limits, self.problem.planner.resolution)
         return Segment(
             part.name, motion.times, motion.positions, motion.velocities, part.attached
         )

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+import numpy.typing as npt
 
 from mmplan.planning.checking import PathChecker
 from mmplan.shapes import Array
@@ -48,6 +49,11 @@ class SmoothCurve:
         a, b, c = self.a[piece], self.b[piece], self.c[piece]
         value: Array = (a + x * (b + x * c), b + 2.0 * x * c, 2.0 * c)[order]
         return value
+
+    @property
+    def moving(self) -> npt.NDArray[np.int64]:
+        """The joints that move along it, by their places in q."""
+        return np.flatnonzero(np.any(self.b, axis=0))
 
     def corners(self, turn: float) -> Array:
         """Ends (n,) of the parabolas that turn by more than `turn` (rad, about)."""

@@ -83,7 +83,7 @@ def search(
     Raises:
         InputError: if there is no planner of that name.
     """
-    with _own_randomness(seed):
+    with own_randomness(seed):
         metric = Metric.of_joints(joints, checker.sweep.weights)
         states = ScaledStates(q_start, joints, metric)
         ends = np.vstack([q_start, q_goals])
@@ -112,7 +112,7 @@ def search(
 
 
 @contextmanager
-def _own_randomness(seed: int) -> Iterator[None]:
+def own_randomness(seed: int) -> Iterator[None]:
     """Start OMPL's random numbers from a seed, and keep OMPL quiet meanwhile.
 
     OMPL complains about every seed but a process's first, although it obeys.

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mmplan.planning.blending import SmoothCurve
 from mmplan.planning.checking import even_fractions
+from mmplan.planning.curve import Curve
 from mmplan.planning.joints import MotionLimits
 from mmplan.planning.toppra_speeds import fastest_speeds
 from mmplan.shapes import Array
@@ -27,9 +27,7 @@ class SpeedProfile:
     times: Array  # (n,), s, when the points are passed
 
     @classmethod
-    def fastest(
-        cls, curve: SmoothCurve, grid: Array, limits: MotionLimits
-    ) -> SpeedProfile:
+    def fastest(cls, curve: Curve, grid: Array, limits: MotionLimits) -> SpeedProfile:
         """The fastest profile within the limits, from rest to rest."""
         speeds = fastest_speeds(curve, grid, limits)
         steps = 2.0 * np.diff(grid) / (speeds[1:] + speeds[:-1])
@@ -44,7 +42,7 @@ class SpeedProfile:
         return along
 
 
-def even_in_length(curve: SmoothCurve) -> Array:
+def even_in_length(curve: Curve) -> Array:
     """Points (n,) that cover every piece of a curve evenly, at least two each."""
     ends = np.append(curve.starts[1:], curve.length)
     extents = ends - curve.starts
@@ -55,7 +53,7 @@ def even_in_length(curve: SmoothCurve) -> Array:
     return np.append(0.0, grid)
 
 
-def even_in_time(curve: SmoothCurve, rough: SpeedProfile, rate: float) -> Array:
+def even_in_time(curve: Curve, rough: SpeedProfile, rate: float) -> Array:
     """Points (n,) passed at even times, and every place where the curvature jumps."""
     samples = max(4, int(np.ceil(rough.times[-1] * rate)))
     even = np.linspace(0.0, rough.times[-1], samples + 1)[1:-1]

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from mmplan.hermite import HermiteCurve
-from mmplan.planning.blending import SmoothCurve, blend_sizes, smooth_curves
+from mmplan.planning.blending import blend_sizes, smooth_curves
 from mmplan.planning.checking import PathChecker, even_fractions
+from mmplan.planning.curve import Curve
 from mmplan.planning.joints import MotionLimits
 from mmplan.planning.speed_profile import SpeedProfile, even_in_length, even_in_time
 from mmplan.planning.world import PlanningWorld, contact_names
@@ -104,14 +105,24 @@ def time_path(
     message = ""
     for attempt in _smaller_and_smaller(sizes):
         curves = smooth_curves(path, attempt, checker.sweep.weights)
-        motion = _joined([_timed(c, limits, checker, settings) for c in curves])
-        hit = _first_collision(motion, checker)
+        motion, hit = time_curves(curves, limits, checker, settings)
         if hit is None:
             stops = len(curves) - 1
             message = f"{motion.duration:.2f} s with {stops} stops"
             return TimingResult(motion, message, stops, checker.states)
         message = f"the timed motion collides: {contact_names(world, hit)}"
     return TimingResult(None, message, states=checker.states)
+
+
+def time_curves(
+    curves: Sequence[Curve],
+    limits: MotionLimits,
+    checker: PathChecker,
+    settings: TimingSettings,
+) -> tuple[TimedPath, Array | None]:
+    """The motion along curves, at rest between two, and where it collides (nq,)."""
+    motion = joined([_timed(c, limits, checker, settings) for c in curves])
+    return motion, _first_collision(motion, checker)
 
 
 def _smaller_and_smaller(sizes: Array) -> Iterator[Array]:
@@ -130,7 +141,7 @@ def _without_repeats(path: Array, weights: Array) -> Array:
 
 
 def _timed(
-    curve: SmoothCurve,
+    curve: Curve,
     limits: MotionLimits,
     checker: PathChecker,
     settings: TimingSettings,
@@ -159,7 +170,7 @@ def _within(motion: TimedPath, limits: MotionLimits) -> TimedPath:
     return motion.stretched(SLACK * max(velocity, np.sqrt(acceleration)))
 
 
-def _joined(motions: list[TimedPath]) -> TimedPath:
+def joined(motions: Sequence[TimedPath]) -> TimedPath:
     """One motion after the other; each begins where and as the last one ended."""
     starts = np.cumsum([0.0, *(m.duration for m in motions)])
     times = [m.times[i > 0 :] + starts[i] for i, m in enumerate(motions)]

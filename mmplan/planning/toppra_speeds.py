@@ -15,12 +15,12 @@ from types import ModuleType
 import numpy as np
 import numpy.typing as npt
 
-from mmplan.planning.blending import SmoothCurve
+from mmplan.planning.curve import Curve
 from mmplan.planning.joints import MotionLimits
 from mmplan.shapes import Array
 
 
-def fastest_speeds(curve: SmoothCurve, grid: Array, limits: MotionLimits) -> Array:
+def fastest_speeds(curve: Curve, grid: Array, limits: MotionLimits) -> Array:
     """The greatest speeds ds/dt (n,) at points `grid` (n,) of a curve, rest to rest.
 
     The grid goes from 0 to the curve's length. The limits hold at its points, and
@@ -30,7 +30,7 @@ def fastest_speeds(curve: SmoothCurve, grid: Array, limits: MotionLimits) -> Arr
         ArithmeticError: if toppra finds no solution; slow enough there always is one.
     """
     toppra = _toppra()
-    moving = np.flatnonzero(np.any(curve.b, axis=0))
+    moving = curve.moving
     velocity, acceleration = limits.velocity[moving], limits.acceleration[moving]
     constraints = [
         toppra.constraint.JointVelocityConstraint(_both_ways(velocity)),
@@ -50,7 +50,7 @@ def fastest_speeds(curve: SmoothCurve, grid: Array, limits: MotionLimits) -> Arr
 class _MovingPart:
     """The joints of a curve that move, as toppra wants a path."""
 
-    def __init__(self, curve: SmoothCurve, moving: npt.NDArray[np.int64]) -> None:
+    def __init__(self, curve: Curve, moving: npt.NDArray[np.int64]) -> None:
         self._curve = curve
         self._moving = moving
         self.dof = len(moving)

@@ -124,7 +124,8 @@ def _grip_faults(stage: Stage, problem: Problem) -> Iterator[Fault]:
     base = segment.positions[:, robot.base.indices]
     if segment.name == "transfer":
         for end, q_base in ((task.start, base[0]), (task.goal, base[-1])):
-            if not _same(end.base, q_base):
+            turns = _whole_turns(end.base, q_base) * robot.base.wraps
+            if not _same(end.base + turns, q_base):
                 message = f"the base stands at {q_base}, the plan says {end.base}"
                 yield Fault("claim", f"{stage.place}: {message}")
 
@@ -136,6 +137,14 @@ def _goal_faults(stage: Stage, now: dict[str, Array]) -> Iterator[Fault]:
         yield Fault(
             "goal", f"{stage.place}: {stage.task.object} is {amount} off its goal"
         )
+
+
+def _whole_turns(q: Array, q_near: Array) -> Array:
+    """The whole turns to add to angles to come nearest to others; 0 if they differ."""
+    if q.shape != q_near.shape:
+        return np.zeros(len(q))
+    turns: Array = 2.0 * np.pi * np.rint((q_near - q) / (2.0 * np.pi))
+    return turns
 
 
 def _same(a: Array, b: Array) -> bool:

@@ -46,6 +46,7 @@ def motion_faults(stages: Sequence[Stage], problem: Problem) -> Iterator[Fault]:
                     "rest", f"{stage.place}: not at rest at its {where}: {message}"
                 )
         yield from _limit_faults(stage, problem)
+        yield from _follower_faults(stage, problem)
         q_before, before = segment.positions[-1], stage.place
 
 
@@ -68,6 +69,21 @@ def _limit_faults(stage: Stage, problem: Problem) -> Iterator[Fault]:
     least, greatest = positions.least[:, index], positions.greatest[:, index]
     lower, upper = problem.base_bounds.T
     yield from _beyond(stage, "base", robot.base, (least, lower), (greatest, upper))
+
+
+def _follower_faults(stage: Stage, problem: Problem) -> Iterator[Fault]:
+    """Joints that are elsewhere, or move otherwise, than those they mimic have them."""
+    names = tuple(problem.robot.model.names)[1:]
+    q, v = stage.segment.positions, stage.segment.velocities
+    for follower, leader, multiplier, offset in problem.robot.hand.followers:
+        off = np.abs(q[:, follower] - multiplier * q[:, leader] - offset)
+        rate = np.abs(v[:, follower] - multiplier * v[:, leader])
+        if max(off.max(), rate.max()) > _EQUAL:
+            yield Fault(
+                "mimic",
+                f"{stage.place}: {names[follower]} does not follow {names[leader]}: "
+                f"off by up to {off.max():.3g}, or {rate.max():.3g} per second",
+            )
 
 
 def _beyond(

@@ -12,6 +12,7 @@ from mmplan.plan import Plan
 from mmplan.problem import Problem
 from mmplan.replay import Stage, replay
 from mmplan.shapes import Array
+from mmplan.verification.base import base_faults
 from mmplan.verification.bodies import Bodies
 from mmplan.verification.carrying import carrying_faults, grasp_faults
 from mmplan.verification.ledger import Finding, Ledger
@@ -61,6 +62,7 @@ def examine(plan: Plan, problem: Problem) -> VerificationReport:
     faults = [
         *_proof_faults(ledger, stages),
         *motion_faults(stages, problem),
+        *base_faults(stages, problem),
         *carrying_faults(stages, problem),
         *faults,
     ]
