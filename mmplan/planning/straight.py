@@ -9,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from mmplan.ik import Solutions
+from mmplan.ik.chain import arm_chain
+from mmplan.ik.following import follow
 from mmplan.kinematics import joint_placements
 from mmplan.planning.checking import PathChecker
 from mmplan.planning.world import PlanningWorld, contact_names
@@ -79,14 +81,21 @@ def _along(world: RobotWorld, q: Array, T_world_tool: Array) -> tuple[Array, str
     """Configurations (m, nq) for the first m tool poses, and why there are no more."""
     robot = world.robot
     T_base_world = np.linalg.inv(_base_pose(robot, q))
-    solutions = robot.ik.solve(T_base_world @ T_world_tool)
-    q_arm, ended = _on_one_branch(robot, q[robot.arm.indices], solutions)
+    q_arm, ended = _arm_along(robot, q[robot.arm.indices], T_base_world @ T_world_tool)
     path = np.tile(q, (len(q_arm), 1))
     path[:, robot.arm.indices] = q_arm
     crooked = _crooked_edges(robot, path, T_world_tool[: len(path)])
     if crooked.any():
         return path[: np.argmax(crooked) + 1], "the arm passes too near a singularity"
     return path, ended
+
+
+def _arm_along(robot: Robot, q_arm: Array, T_base_tool: Array) -> tuple[Array, str]:
+    """The arm (m', k) at the first of tool poses (m, 4, 4), and why not at the rest."""
+    if robot.ik.complete:
+        return _on_one_branch(robot, q_arm, robot.ik.solve(T_base_tool))
+    chain = arm_chain(robot.model, robot.arm.names, robot.tool_frame)
+    return follow(chain, q_arm, T_base_tool)
 
 
 def _on_one_branch(
