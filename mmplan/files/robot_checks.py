@@ -20,14 +20,13 @@ def joined_facts(document: Document, parts: Sequence[Urdf]) -> Urdf:
     They are those of its URDFs and the joints of a base that is added.
     """
     joints = {name: joint for urdf in parts for name, joint in urdf.joints.items()}
-    if not document.get("base", "joints"):
-        names = BASE_JOINTS.get(str(document.get("base", "type")), ())
-        joints |= {n: UrdfJoint(n, -math.inf, math.inf) for n in names}
+    for name in _added_joints(document):
+        joints[name] = UrdfJoint(name, -math.inf, math.inf)
     for name in document.keys("position"):
         lower, upper = _numbers(document, ("position", name)) or (0.0, 0.0)
         if name in joints and lower < upper:
             joints[name] = replace(joints[name], lower=lower, upper=upper)
-    links = [link for urdf in parts for link in urdf.links]
+    links = dict.fromkeys(link for urdf in parts for link in urdf.links)
     bodies = [link for urdf in parts for link in urdf.bodies]
     return Urdf(joints, tuple(links), tuple(bodies), {})
 
@@ -54,10 +53,15 @@ def robot_faults(document: Document, urdf: Urdf) -> Iterator[Fault]:
 
 def grouped_joints(document: Document) -> list[str]:
     """The joints of the three groups; those of the base also where they are added."""
-    base = _texts(document, ("base", "joints"))
-    added = BASE_JOINTS.get(str(document.get("base", "type")), ())
-    others = (_texts(document, (group, "joints")) for group in GROUPS[1:])
-    return [*(base or added), *(name for names in others for name in names)]
+    given = (_texts(document, (group, "joints")) for group in GROUPS)
+    return [*_added_joints(document), *(name for names in given for name in names)]
+
+
+def _added_joints(document: Document) -> tuple[str, ...]:
+    """The joints of a base that is added; all there can be where its type is none."""
+    if document.get("base", "joints"):
+        return ()
+    return BASE_JOINTS.get(str(document.get("base", "type")), BASE_JOINTS["planar"])
 
 
 def _unknown_joints(document: Document, path: KeyPath, urdf: Urdf) -> Iterator[Fault]:
@@ -98,9 +102,7 @@ def _missing_limits(document: Document, urdf: Urdf) -> Iterator[Fault]:
     """Joints without an acceleration limit, added ones without one of velocity."""
     used = [name for name in grouped_joints(document) if name in urdf.joints]
     yield from _first_missing(document, "acceleration", used)
-    if not document.get("base", "joints"):
-        names = BASE_JOINTS.get(str(document.get("base", "type")), ())
-        yield from _first_missing(document, "velocity", names)
+    yield from _first_missing(document, "velocity", _added_joints(document))
 
 
 def _first_missing(

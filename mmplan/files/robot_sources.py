@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import get_args
 from xml.etree import ElementTree as ET
 
 from mmplan import assets
 from mmplan.exceptions import Diagnostic, InputError
 from mmplan.files.document import Document, Fault, KeyPath
 from mmplan.files.located_xml import read_xml
+from mmplan.files.robot_parts import JointType
 from mmplan.files.suggestions import unknown
 from mmplan.files.urdf import Urdf, mesh_files, urdf_facts
 from mmplan.files.urdf_faults import urdf_faults
@@ -117,7 +119,7 @@ def _change_types(root: ET.Element, document: Document) -> None:
     """Give joints the types that the robot.yaml says."""
     for joint in root.findall("joint"):
         kind = document.get("types", joint.get("name", ""))
-        if isinstance(kind, str):
+        if isinstance(kind, str) and kind in get_args(JointType):
             joint.set("type", kind)
 
 
