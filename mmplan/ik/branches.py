@@ -63,8 +63,11 @@ class Pruning:
         return case, angles.values[which, case]
 
 
-def ranked(pose: Index, n: int) -> tuple[Index, Index, Index]:
-    """An order (m,) by pose, each one's rank within its pose, and the counts (n,)."""
+def ranked(pose: Index, n: int = 0) -> tuple[Index, Index, Index]:
+    """An order (m,) by pose, each one's rank within its pose, and the counts.
+
+    There are counts for n poses, or for so many as there are.
+    """
     order: Index = np.argsort(pose, kind="stable")
     counts: Index = np.bincount(pose, minlength=n)
     first = np.cumsum(counts) - counts

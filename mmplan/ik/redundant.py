@@ -8,17 +8,18 @@ all joints free.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from mmplan.ik import Solutions
-from mmplan.ik.branches import Candidates, Pruning, join, pack, ranked, wound
+from mmplan.ik.branches import Candidates, Index, Pruning, join, pack, ranked, wound
 from mmplan.ik.chain import Chain
+from mmplan.ik.held_joints import HeldJoints
 from mmplan.ik.numeric import Numeric
 from mmplan.ik.polish import polish
-from mmplan.ik.poses import Poses, components, each_with_each
+from mmplan.ik.poses import Poses, components
 from mmplan.ik.six_joints import ClosedForm
 from mmplan.shapes import Array
 
@@ -30,13 +31,18 @@ _ROUNDING = 1e-10
 _LEVERAGE = 20.0
 
 
+# So many of the samples tell whether a pose has solutions beyond the limits.
+_PROBES = 6
+
+
 @dataclass(frozen=True, eq=False)
 class Redundant:
     """A solver that holds the first `front` joints and all after the next six.
 
     `held` (s, k - 6) are the values of the joints held, one sample a row. No more than
     `most` solutions of a pose are returned, spread over the samples, and only those
-    within the limits. `rescue` is asked for the poses that the samples do not solve.
+    within the limits. Poses that no sample solves so are given to `rescue`; where it
+    finds nothing either, one solution beyond the limits is returned, if one is found.
     """
 
     chain: Chain
@@ -51,22 +57,19 @@ class Redundant:
 
     def solve(self, T_base_tool: Array) -> Solutions:
         """Solutions for tool poses (n, 4, 4) in the frame of the base."""
-        n = len(T_base_tool)
+        n, k = len(T_base_tool), len(self.chain)
         wanted = components(T_base_tool)
-        displacement = components(T_base_tool @ self.chain.T_tool_home)
-        size = max(1, _CHUNK // len(self.held))
-        parts = []
-        for start in range(0, n, size):
-            rows = np.arange(start, min(start + size, n))
-            found = self._sampled(displacement.take(rows))
-            parts.append(Candidates(found.pose + start, found.q))
-        found = join(parts, len(self.chain))
-        found = polish(self.chain, _thin(found, self.most, n), wanted)
-        found = self._inside(found)
-        lost = np.ones(n, dtype=np.bool_)
-        lost[found.pose] = False
-        rescued = self.rescue.candidates(np.flatnonzero(lost), wanted)
-        return pack(self.chain, join([found, rescued], len(self.chain)), n)
+        moved = components(T_base_tool @ self.chain.T_tool_home)
+        sampled = _thin(self._sampled(self._samples, moved, self._pruning), self.most)
+        inside = self._inside(polish(self.chain, sampled, wanted))
+        rescued = self.rescue.candidates(_missing(inside, n), wanted)
+        inside = join([inside, rescued], k)
+        lost = _missing(inside, n)
+        anywhere = Pruning.none(6)
+        beyond = _thin(self._sampled(self._probes, moved.take(lost), anywhere), 1)
+        beyond = Candidates(lost[beyond.pose], beyond.q)
+        beyond = polish(self.chain, beyond, wanted)
+        return pack(self.chain, join([inside, beyond], k), n)
 
     def _inside(self, candidates: Candidates) -> Candidates:
         """The candidates of which a winding is within the limits."""
@@ -74,37 +77,25 @@ class Redundant:
         inside = (q >= self.chain.lower) & (q <= self.chain.upper)
         return candidates.take(np.flatnonzero(inside.all(axis=1)))
 
-    def _sampled(self, displacement: Poses) -> Candidates:
-        """What the samples give within the limits (nearly), sample by sample."""
-        n = displacement.p.shape[1]
-        found = self.form.solve(self._displacements(displacement), self._pruning)
-        sample, pose = np.divmod(found.pose, n)
-        held = self.held[sample].T
-        q = np.concatenate([held[: self.front], found.q, held[self.front :]])
-        return Candidates(pose, q)
-
-    def _displacements(self, moved: Poses) -> Poses:
-        """How the six joints must move the tool, for each sample each pose, (s n)."""
-        before, after = self._undone
-        if self.front == 0:
-            return each_with_each(after.inverse(), moved.inverse()).inverse()
-        moved = each_with_each(before, moved)
-        if self.front == self.held.shape[1]:
-            return moved
-        n = moved.p.shape[1] // len(self.held)
-        return moved @ after.take(np.repeat(np.arange(len(self.held)), n))
+    def _sampled(self, held: HeldJoints, moved: Poses, pruning: Pruning) -> Candidates:
+        """What samples give for motions of the tool from where it is at 0, (n,)."""
+        n = moved.p.shape[1]
+        size = max(1, _CHUNK // len(held.values))
+        parts = []
+        for start in range(0, n, size):
+            rows = np.arange(start, min(start + size, n))
+            found = held.solve(self.form, moved.take(rows), pruning)
+            parts.append(Candidates(rows[found.pose], found.q))
+        return join(parts, len(self.chain))
 
     @cached_property
-    def _undone(self) -> tuple[Poses, Poses]:
-        """The motions of the joints held, before the six and after, undone, (s,)."""
-        held = self.held.T
-        k = len(self.chain)
-        before = self.chain.part(range(self.front))
-        after = self.chain.part(range(self.front + 6, k))
-        return (
-            _motion(before, held[: self.front]).inverse(),
-            _motion(after, held[self.front :]).inverse(),
-        )
+    def _samples(self) -> HeldJoints:
+        return HeldJoints(self.chain, self.front, self.held)
+
+    @cached_property
+    def _probes(self) -> HeldJoints:
+        rows = np.linspace(0, len(self.held) - 1, _PROBES).astype(np.intp)
+        return HeldJoints(self.chain, self.front, self.held[rows])
 
     @cached_property
     def _pruning(self) -> Pruning:
@@ -113,14 +104,16 @@ class Redundant:
         return Pruning(six.lower - margin, six.upper + margin)
 
 
-def _motion(chain: Chain, q: Array) -> Poses:
-    """How the joints of a chain at q (k, m) move what stands after them."""
-    return replace(chain, T_home=np.eye(4)).forward(q)
+def _missing(found: Candidates, n: int) -> Index:
+    """Which of n poses have no candidate."""
+    missing = np.ones(n, dtype=np.bool_)
+    missing[found.pose] = False
+    return np.flatnonzero(missing)
 
 
-def _thin(candidates: Candidates, most: int, n: int) -> Candidates:
+def _thin(candidates: Candidates, most: int) -> Candidates:
     """At most so many of each pose, evenly spread over those in their order."""
-    order, rank, counts = ranked(candidates.pose, n)
+    order, rank, counts = ranked(candidates.pose)
     total = counts[candidates.pose[order]]
     spread = rank * most // total != (rank - 1) * most // total
     return candidates.take(order[spread | (total <= most)])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -61,7 +63,25 @@ def test_poses_are_solved_within_limits(arm: Arm) -> None:
     assert_masks(solutions, solver.chain.lower, solver.chain.upper)
     assert solutions.within.any(axis=1).mean() >= 0.99
     assert solutions.exists.sum(axis=1).max() <= 16
-    np.testing.assert_array_equal(solutions.within, solutions.exists)
+    solved = solutions.within.any(axis=1)
+    np.testing.assert_array_equal(solutions.within[solved], solutions.exists[solved])
+
+
+def test_a_pose_beyond_the_limits_exists_but_not_within(arm: Arm) -> None:
+    chain = solver_of(arm).chain
+    narrow = replace(
+        chain,
+        lower=np.where(chain.prismatic, chain.lower, chain.ranges[0] * 0.05),
+        upper=np.where(chain.prismatic, chain.upper, chain.ranges[1] * 0.05 + 0.01),
+    )
+    solver = replace(solver_of(arm), chain=narrow)
+    solver = replace(solver, rescue=replace(solver.rescue, chain=narrow))
+    T = arm.tool_poses(arm.draw(100, seed=8))
+    solutions = solver.solve(T)
+    assert_reached(arm, T, solutions)
+    beyond = solutions.exists.any(axis=1) & ~solutions.within.any(axis=1)
+    assert beyond.mean() > 0.6
+    assert solutions.exists[beyond].sum(axis=1).max() == 1
 
 
 def test_the_source_is_among_the_branches_if_it_is_at_a_sample(arm: Arm) -> None:
