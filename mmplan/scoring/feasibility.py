@@ -54,13 +54,6 @@ class Feasibility:
         self._T_world_object = world.standing[object_name]
         self._open_fingers = world.fingers_alone()
         self._closed_world = world.permit_touch(object_name, fingers=True)
-        # What the hand does to the scene depends on the grasp alone.
-        self._hand_open = self._open_fingers.hand_in_scene()
-        self._hand_closed = self._closed_world.hand_in_scene()
-        self._rest_open = self._open_fingers.except_hand_in_scene()
-        self._rest_closed = self._closed_world.except_hand_in_scene()
-        self._hand_poses = HandPoses(problem.robot)
-        self._hands = RowCache()
         self._base_world = world.base_alone()
 
     def base_outcomes(self, q_base: Array) -> npt.NDArray[np.int8]:
@@ -91,39 +84,17 @@ class Feasibility:
         q[..., robot.arm.indices] = solutions.q
         return Arms(q, solutions.exists, solutions.within)
 
-    def hand_outcomes(self, hands: Hands) -> npt.NDArray[np.int8]:
-        """What the hand alone comes to in the scene at n grasps, (n,).
-
-        COLLISION, HAND_OPEN_COLLISION or SCORED, whatever arm holds the hand there.
-        """
-        rows = self._hands.rows(
-            hands.grasp.tolist(), lambda new: self._hand_rows(hands.take(new))
-        )
-        return rows[:, 0].astype(np.int8)
-
-    def _hand_rows(self, hands: Hands) -> Array:
-        poses = self._hand_poses
-        closed = self._hand_closed.in_collision_at(poses(hands.T_world_tool, hands.closed))
-        opened = self._hand_open.in_collision_at(poses(hands.T_world_tool, hands.opened))
-        outcome = np.where(opened, Outcome.HAND_OPEN_COLLISION, Outcome.SCORED)
-        return np.where(closed, Outcome.COLLISION, outcome)[:, None].astype(np.float64)
-
-    def outcomes(
-        self, q: Array, opened: Array, hand: npt.NDArray[np.int8]
-    ) -> npt.NDArray[np.int8]:
+    def outcomes(self, q: Array, opened: Array) -> npt.NDArray[np.int8]:
         """COLLISION, HAND_OPEN_COLLISION or SCORED for configurations q (m, nq), (m,).
 
-        `opened` (m, hand joints) is the hand before it closes, `hand` (m,) what
-        `hand_outcomes` says of the grasps.
+        `opened` (m, hand joints) is the hand before it closes.
         """
         outcome = np.full(len(q), Outcome.COLLISION, np.int8)
-        left = np.flatnonzero(hand != Outcome.COLLISION)
-        left = left[~self._rest_closed.in_collision(q[left])]
-        outcome[left] = Outcome.HAND_OPEN_COLLISION
-        left = left[hand[left] == Outcome.SCORED]
-        q_open = q[left]
-        q_open[:, self._robot.hand.indices] = opened[left]
-        outcome[left[~self._rest_open.in_collision(q_open)]] = Outcome.SCORED
+        free = np.flatnonzero(~self._closed_world.in_collision(q))
+        q_open = q[free]
+        q_open[:, self._robot.hand.indices] = opened[free]
+        hit = self._open_fingers.in_collision(q_open)
+        outcome[free] = np.where(hit, Outcome.HAND_OPEN_COLLISION, Outcome.SCORED)
         return outcome
 
     def base_contacts(self, q_base: Array) -> tuple[Contact, ...]:
