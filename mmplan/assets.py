@@ -42,11 +42,14 @@ def find_scene(name: str | Path) -> Path:
 
 
 def find_robot(name: str, folder: Path) -> Path | None:
-    """The robot.yaml that `name` means: a shipped robot, else a path from `folder`."""
+    """The robot.yaml that `name` means: a shipped robot, else a path from `folder`.
+
+    The path is that of a robot.yaml, or of the folder that it is in.
+    """
     if name in robot_names():
         return robots_folder() / name / ROBOT_FILE
-    path = folder / name
-    return path if is_file(path) else None
+    paths = (folder / name, folder / name / ROBOT_FILE)
+    return next((path for path in paths if is_file(path)), None)
 
 
 def is_file(path: Path) -> bool:

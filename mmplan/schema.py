@@ -1,10 +1,11 @@
-"""JSON schema of the scene format, by which editors complete keys and show help."""
+"""JSON schemas of scenes and robots, by which editors complete keys and show help."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from mmplan import assets
+from mmplan.files.robot_sections import ROBOT_VERSION, RobotSection
 from mmplan.files.scene_sections import SCENE_VERSION, SceneSection
 from mmplan.files.shape_sections import SHAPES
 
@@ -22,12 +23,21 @@ def scene_schema() -> dict[str, Any]:
         section = schema["$defs"][name]
         shapes = [s for s in SHAPES if s in section["properties"]]
         section["oneOf"] = [{"required": [s]} for s in shapes]
+    return _titled(schema, f"mmplan scene, version {SCENE_VERSION}")
+
+
+def robot_schema() -> dict[str, Any]:
+    """The JSON schema of robot files."""
+    schema = RobotSection.model_json_schema()
+    body = schema["$defs"]["BodySection"]
+    shapes = [key for key in body["properties"] if key != "at"]
+    body["oneOf"] = [{"required": [s]} for s in shapes]
+    return _titled(schema, f"mmplan robot, version {ROBOT_VERSION}")
+
+
+def _titled(schema: dict[str, Any], title: str) -> dict[str, Any]:
     simplified: dict[str, Any] = _simplified(schema)
-    return {
-        "$schema": DIALECT,
-        **simplified,
-        "title": f"mmplan scene, version {SCENE_VERSION}",
-    }
+    return {"$schema": DIALECT, **simplified, "title": title}
 
 
 def _examples(forms: list[dict[str, Any]], names: list[str]) -> list[dict[str, Any]]:

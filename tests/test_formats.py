@@ -14,6 +14,7 @@ from mmplan.files.scene_sections import SceneSection
 from mmplan.files.settings_sections import OptimizerName, PlannerName
 from mmplan.optimizers import OPTIMIZERS
 from mmplan.planning.planners import available_planners
+from mmplan.robot_build import load_robot
 from mmplan.scene_file import load_problem
 
 DOCUMENT = Path(__file__).parents[1] / "docs" / "formats.md"
@@ -26,6 +27,15 @@ def test_the_example_of_a_scene_loads(tmp_path: Path) -> None:
     path = tmp_path / "cup.yaml"
     path.write_text(example.group(1))
     assert load_problem(path).name == "cup"
+
+
+def test_the_example_of_a_robot_loads(tmp_path: Path) -> None:
+    section = DOCUMENT.read_text().partition("\n## Robot\n")[2]
+    example = re.search(r"```yaml\n(.*?)```", section, re.DOTALL)
+    assert example
+    path = tmp_path / "robot.yaml"
+    path.write_text(example.group(1))
+    assert load_robot(path).name == "my_robot"
 
 
 @pytest.mark.parametrize("model", [SceneSection, RobotSection])

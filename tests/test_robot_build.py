@@ -9,7 +9,7 @@ import pytest
 
 from mmplan.assets import robots_folder
 from mmplan.exceptions import InputError
-from mmplan.robot_build import build_robot
+from mmplan.robot_build import build_robot, load_robot
 from mmplan.robot_file import load_robot_description
 
 PATH = robots_folder() / "puma_mobile" / "robot.yaml"
@@ -92,3 +92,10 @@ def test_without_disabled_pairs_all_that_moves_is_checked() -> None:
     n = len(robot.geometry.geometryObjects)
     same_joint = 1  # the base's chassis and column
     assert len(robot.geometry.collisionPairs) == n * (n - 1) // 2 - same_joint
+
+
+def test_a_robot_goes_by_its_name_its_file_and_its_folder() -> None:
+    for name in ("puma_mobile", str(PATH), str(PATH.parent)):
+        assert load_robot(name).name == "puma_mobile"
+    with pytest.raises(InputError, match="did you mean 'puma_mobile'"):
+        load_robot("puma_mobil")

@@ -11,14 +11,22 @@ from jsonschema import Draft202012Validator
 
 from mmplan import assets
 from mmplan.files.yaml_reader import read_document
-from mmplan.schema import scene_schema
+from mmplan.schema import robot_schema, scene_schema
 
 FAULTY = Path(__file__).parent / "faulty"
+FAULTY_ROBOTS = Path(__file__).parent / "faulty_robots"
 
 
 @pytest.fixture(scope="module")
 def validator() -> Draft202012Validator:
     schema = scene_schema()
+    Draft202012Validator.check_schema(schema)
+    return Draft202012Validator(schema)
+
+
+@pytest.fixture(scope="module")
+def robots() -> Draft202012Validator:
+    schema = robot_schema()
     Draft202012Validator.check_schema(schema)
     return Draft202012Validator(schema)
 
@@ -69,9 +77,33 @@ def test_faults_that_an_editor_shows(
     assert any(word in message for message in messages), messages
 
 
-def test_every_key_is_described(validator: Draft202012Validator) -> None:
-    keys = list(_properties(validator.schema))
-    assert len(keys) > 60
+@pytest.mark.parametrize("name", assets.robot_names())
+def test_shipped_robots_conform(robots: Draft202012Validator, name: str) -> None:
+    path = assets.robots_folder() / name / assets.ROBOT_FILE
+    assert faults(robots, path) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "word"),
+    [
+        ("sound", ""),
+        ("base_type", "plannar"),
+        ("type_unknown", "spherical"),
+        ("collision_kind", "hulls"),
+        ("two_shapes", "valid under each of"),
+    ],
+)
+def test_faults_of_robots_that_an_editor_shows(
+    robots: Draft202012Validator, name: str, word: str
+) -> None:
+    messages = faults(robots, FAULTY_ROBOTS / f"{name}.yaml")
+    assert any(word in message for message in messages) == bool(word), messages
+
+
+@pytest.mark.parametrize("kind", ["validator", "robots"])
+def test_every_key_is_described(kind: str, request: pytest.FixtureRequest) -> None:
+    keys = list(_properties(request.getfixturevalue(kind).schema))
+    assert len(keys) > 40
     for key, schema in keys:
         assert schema.get("description") or "$ref" in schema, key
 

@@ -19,9 +19,11 @@ def add(commands: Any) -> None:
         command = commands.add_parser(name, help=text, description=text)
         add_json(command)
         command.set_defaults(run=run)
-    text = "print the JSON schema of scene files, or of plan files"
+    text = "print the JSON schema of scene files, of robot files, or of plan files"
     schema = commands.add_parser("schema", help=text, description=text)
-    schema.add_argument("of", nargs="?", choices=("scene", "plan"), default="scene")
+    schema.add_argument(
+        "of", nargs="?", choices=("scene", "robot", "plan"), default="scene"
+    )
     schema.set_defaults(run=_schema)
 
 
@@ -60,7 +62,8 @@ def _list(rows: list[tuple[str, str]], as_json: bool) -> int:
 
 def _schema(options: argparse.Namespace) -> int:
     from mmplan.plan_file import plan_schema
-    from mmplan.schema import scene_schema
+    from mmplan.schema import robot_schema, scene_schema
 
-    print_json(plan_schema() if options.of == "plan" else scene_schema())
+    schemas = {"scene": scene_schema, "robot": robot_schema, "plan": plan_schema}
+    print_json(schemas[options.of]())
     return SOLVED
