@@ -99,7 +99,10 @@ def cases(names: Sequence[str]) -> Iterator[tuple[str, Case]]:
     for name in ARMS if example_robots() else ():
         if not names or name in names:
             arm = load_arm(name)
-            yield name, Case(arm, SOLVERS["auto"](arm.model, arm.joints, arm.frame, {}))
+            yield (
+                f"{name} (URDF)",
+                Case(arm, SOLVERS["auto"](arm.model, arm.joints, arm.frame, {})),
+            )
 
 
 def _shipped(name: str) -> Case:
@@ -142,7 +145,7 @@ def main() -> None:
 
 
 def _plain(cells: Sequence[str]) -> str:
-    widths = (16, 6, 9, 8, 6, 7, 8, 0)
+    widths = (22, 6, 9, 8, 6, 7, 8, 0)
     return "  ".join(
         cell.ljust(width) if column in (0, 7) else cell.rjust(width)
         for column, (cell, width) in enumerate(zip(cells, widths, strict=True))

@@ -62,3 +62,11 @@ def test_joint_6_of_the_puma_has_two_windings_beyond_94_degrees() -> None:
 
 def test_no_winding_within_limits_is_an_empty_answer() -> None:
     assert windings(np.array([3.0]), np.array([-1.0]), np.array([1.0])).shape == (0, 1)
+
+
+def test_a_joint_without_limits_is_nearest_0_and_has_one_winding() -> None:
+    lower, upper = np.array([-np.inf, -1.0]), np.array([np.inf, 9.0])
+    q = np.array([15.0, 0.5])
+    near = [15.0 - 2 * TURN, 0.5 + TURN]
+    np.testing.assert_allclose(nearest_winding(q, lower, upper), near)
+    np.testing.assert_allclose(windings(q, lower, upper), [near, [near[0], 0.5]])
