@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from mmplan.collision import Scenery
+from mmplan.exceptions import InputError
+from mmplan.files.document import Fault
 from mmplan.files.robot_composition import pose_of
 from mmplan.files.scene_sections import (
     BoundsSection,
-    ObjectSection,
     ObstacleSection,
     SceneSection,
     StartSection,
 )
 from mmplan.fixed_base import hold_base, stand_at
+from mmplan.grasp_build import default_grasps, named_grasps
+from mmplan.grasps import GraspFamily
 from mmplan.problem import Object, Obstacle, Problem, Task
 from mmplan.robot import Robot
 from mmplan.robot_build import build_robot
 from mmplan.scene_reader import SceneFile
-from mmplan.scene_values import grasps, pose, shape
+from mmplan.scene_values import pose, shape
 from mmplan.shapes import Array, Fixture, read_only
 from mmplan.zones import Zone
 
@@ -42,7 +47,7 @@ def build_problem(scene: SceneFile) -> Problem:
         obstacles=tuple(
             _obstacle(scene, name, o) for name, o in section.obstacles.items()
         ),
-        objects=tuple(_object(scene, name, o) for name, o in section.objects.items()),
+        objects=tuple(_objects(scene, robot)),
         tasks=_tasks(section),
         score=section.score.settings(),
         optimizer=section.optimizer.settings(),
@@ -117,10 +122,37 @@ def _obstacle(scene: SceneFile, name: str, section: ObstacleSection) -> Obstacle
     return Obstacle(name, solid, pose(section.at), section.ground)
 
 
-def _object(scene: SceneFile, name: str, section: ObjectSection) -> Object:
-    solid = shape(section, scene.folder)
-    families = {n: grasps(g, solid) for n, g in section.grasps.items()}
-    return Object(name, solid, pose(section.at), families)
+def _objects(scene: SceneFile, robot: Robot) -> Iterator[Object]:
+    """The objects; one that a task moves has the grasps of its shape if no others."""
+    moved = {task.move for task in scene.section.tasks}
+    for name, section in scene.section.objects.items():
+        solid = shape(section, scene.folder)
+        item = Object(name, solid, pose(section.at), {}, section.mass, section.friction)
+        yield (
+            replace(item, grasps=_grasps(scene, item, robot)) if name in moved else item
+        )
+
+
+def _grasps(scene: SceneFile, item: Object, robot: Robot) -> dict[str, GraspFamily]:
+    """The grasps of an object; none if its shape is at fault, which is found later.
+
+    Raises:
+        InputError: The hand cannot grasp it so, with the place in the scene.
+    """
+    section = scene.section.objects[item.name]
+    try:
+        Scenery.solids_of_object(item)
+    except InputError:
+        return {}
+    families, faults = named_grasps(section, item, robot, scene.folder)
+    if not section.grasps:
+        try:
+            families = default_grasps(item, robot)
+        except InputError as error:
+            faults = [Fault(("objects", item.name), str(error), at_key=True)]
+    if faults:
+        raise scene.document.error(faults)
+    return families
 
 
 def _tasks(section: SceneSection) -> tuple[Task, ...]:

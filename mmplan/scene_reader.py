@@ -55,6 +55,9 @@ class SceneFile:
         for name, section in sections:
             if section.mesh is not None:
                 yield f"{name} mesh", self.folder / section.mesh
+        for name, item in self.section.objects.items():
+            for grasp, file in item.grasp_files():
+                yield f"{name} grasp {grasp}", self.folder / file
         for name, obstacle in self.section.obstacles.items():
             if obstacle.urdf is not None:
                 urdf = self.folder / obstacle.urdf

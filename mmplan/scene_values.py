@@ -1,4 +1,4 @@
-"""Poses, shapes and grasps of a scene file as the values that mmplan computes with."""
+"""Poses and shapes of a scene file as the values that mmplan computes with."""
 
 from __future__ import annotations
 
@@ -7,10 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from mmplan.files.grasp_sections import AxisSection, RimSection
 from mmplan.files.pose_section import PoseSection
 from mmplan.files.shape_sections import ShapeKeys
-from mmplan.grasps import Axis, GraspFamily, Rim
 from mmplan.shapes import (
     Array,
     Box,
@@ -45,20 +43,6 @@ def shape(section: ShapeKeys, folder: Path) -> Shape:
     if section.box is not None:
         return Box(section.box)
     return _round_shape(section)
-
-
-def grasps(section: AxisSection | RimSection, shape: Shape) -> GraspFamily:
-    """The grasp family on an object of that shape."""
-    if isinstance(section, AxisSection):
-        return Axis(section.along)
-    radius, height = section.radius, section.height
-    if isinstance(shape, Revolve):
-        widest = max(shape.profile.tolist())  # of equal radii, the highest
-        radius = widest[0] if radius is None else radius
-        height = widest[1] if height is None else height
-    assert radius is not None, "validated: other shapes have both"
-    assert height is not None, "validated: other shapes have both"
-    return Rim(radius, height, section.spread)
 
 
 def _scale(section: ShapeKeys) -> tuple[float, float, float]:

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from mmplan import assets
 from mmplan.files.pose_section import PoseSection
-from mmplan.grasps import Axis, Rim
+from mmplan.grasps import Rim
 from mmplan.problem import OptimizerSettings, PlannerSettings, ScoreSettings
 from mmplan.scene_build import build_problem
 from mmplan.scene_file import load_problem
@@ -47,7 +47,6 @@ objects:
     grasps:
       lip: {family: rim}
       low_lip: {family: rim, height: 0.01, spread: 0.5}
-      middle: {family: axis, along: [0.005, 0.015]}
 tasks:
   - {move: plate, to: {xyz: [1.3, -1.2, 0.35], rpy: [0, 0, 1]}, approach: 0.2, lift: 0}
   - {move: plate, to: {xyz: [1.3, -1.0, 0.35]}}
@@ -96,7 +95,6 @@ def test_grasps_take_the_lip_from_the_widest_point(scene_path: Path) -> None:
     assert plate.grasps == {
         "lip": Rim(0.1, 0.02, math.pi / 3),
         "low_lip": Rim(0.1, 0.01, 0.5),
-        "middle": Axis((0.005, 0.015)),
     }
 
 

@@ -1,9 +1,12 @@
 """The one door to coal: solids, the collision world, batched checks, distances."""
 
+from mmplan.collision.antipodal import antipodal_poses
 from mmplan.collision.assembly import Assembly, Body, TouchRules
 from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
 from mmplan.collision.closing import Closings, HandCloser
 from mmplan.collision.distances import LinkDistances
+from mmplan.collision.hand_size import hand_size
+from mmplan.collision.hand_widths import hand_widths
 from mmplan.collision.requests import make_exact
 from mmplan.collision.scenery import Scenery
 from mmplan.collision.solids import solids_of_obstacle
@@ -30,7 +33,10 @@ __all__ = [
     "LinkDistances",
     "Scenery",
     "TouchRules",
+    "antipodal_poses",
     "clearances",
+    "hand_size",
+    "hand_widths",
     "local_bounds",
     "make_exact",
     "moved_bounds",

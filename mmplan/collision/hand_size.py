@@ -14,6 +14,7 @@ from mmplan.robot import Robot
 from mmplan.shapes import Array
 
 _PROBE = 1e-4  # m, radius of the ball that stands for the tool frame's origin
+_INTERPOLATED = 9
 _NO_PALM = 0.1  # m, reach of a hand that has no bodies but fingers
 
 
@@ -22,27 +23,55 @@ def hand_size(robot: Robot) -> HandSize:
 
     Fingers count to the side of the tool frame on which their middle lies.
     """
-    bodies = _bodies_in_tool(robot)
+    bodies = _bodies_in_tool(robot, robot.hand_open)
     fingers = [b for b in bodies if robot.kind_of(b[0]) == "finger"]
-    sides = [
-        [_distance(b) for b in fingers if _middle(b)[1] * side > 0.0]
-        for side in (1.0, -1.0)
-    ]
     palm = [
         _distance(b)
         for b in bodies
         if robot.kind_of(b[0]) == "arm" and b[0].parentJoint == robot.tool_joint
     ]
     return HandSize(
-        opening=sum(min(side, default=0.0) for side in sides),
+        opening=_opening(fingers),
         reach=min(palm, default=_NO_PALM),
         width=max((_extent(b) for b in fingers), default=0.0),
     )
 
 
-def _bodies_in_tool(robot: Robot) -> list[tuple[pin.GeometryObject, Array]]:
-    """All bodies with their poses (4, 4) in the tool frame, hand open."""
-    T_world_joint = joint_placements(robot.model, robot.q_neutral[None])[0]
+def hands_open_by(robot: Robot, openings: Array) -> Array:
+    """The hand's joints (n, hand joints) at which it is open by given lengths (n,), m.
+
+    The joints go evenly from open to closed; in between the opening is interpolated.
+    """
+    shares = np.linspace(0.0, 1.0, _INTERPOLATED)
+    hands = robot.hand_closed + shares[:, None] * (robot.hand_open - robot.hand_closed)
+    measured = []
+    for hand in hands:
+        bodies = _bodies_in_tool(robot, hand)
+        measured.append(
+            _opening([b for b in bodies if robot.kind_of(b[0]) == "finger"])
+        )
+    share = np.interp(openings, np.maximum.accumulate(measured), shares)
+    stroke = robot.hand_open - robot.hand_closed
+    found: Array = robot.hand_closed + share[:, None] * stroke
+    return found
+
+
+def _opening(fingers: list[tuple[pin.GeometryObject, Array]]) -> float:
+    """How far apart the fingers on the two sides of the tool frame are."""
+    sides = [
+        [_distance(b) for b in fingers if _middle(b)[1] * side > 0.0]
+        for side in (1.0, -1.0)
+    ]
+    return sum(min(side, default=0.0) for side in sides)
+
+
+def _bodies_in_tool(
+    robot: Robot, hand: Array
+) -> list[tuple[pin.GeometryObject, Array]]:
+    """All bodies with their poses (4, 4) in the tool frame."""
+    q = robot.q_neutral.copy()
+    q[robot.hand.indices] = hand
+    T_world_joint = joint_placements(robot.model, q[None])[0]
     T_tool_world = np.linalg.inv(T_world_joint[robot.tool_joint] @ robot.T_joint_tool)
     return [
         (b, T_tool_world @ T_world_joint[b.parentJoint] @ b.placement.homogeneous)

@@ -1,72 +1,63 @@
-"""Grasps in scene files: one section for each family."""
+"""Grasps in scene files: one section for each family, or the name of a file."""
 
 from __future__ import annotations
 
-import math
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, TypeAlias
 
-from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
+from pydantic import BeforeValidator, Discriminator, Tag
 
-from mmplan.files.section import Interval, Metres, Section, Size, fault, fault_at
-from mmplan.files.shape_sections import ShapeKeys
+from mmplan.files.free_grasp_sections import (
+    AntipodalSection,
+    FileSection,
+    HandleSection,
+    PosesSection,
+    TsrSection,
+)
+from mmplan.files.section import FileName, Section, fault, fault_at
+from mmplan.files.shape_grasp_sections import (
+    AxisSection,
+    BoxFacesSection,
+    CylinderSideSection,
+    CylinderTopSection,
+    RimSection,
+    SphereGraspsSection,
+)
 from mmplan.files.suggestions import listed, unknown
 
-
-class AxisSection(Section):
-    """Target on the object's z axis, approach perpendicular to it."""
-
-    family: Literal["axis"]
-    """axis: at the z axis from any side; rim: at the outer lip."""
-    along: Interval
-    """Lowest and highest target, z in the object's frame, m."""
-
-    def fault_on(self, shape: ShapeKeys) -> str | None:
-        """Why there is nothing to grasp on that shape."""
-        low, high = shape.extent()
-        if self.along[0] <= high and self.along[1] >= low:
-            return None
-        return f"'along' misses the object, whose z runs from {low:g} to {high:g} m"
-
-
-def _half_turn(angle: float) -> float:
-    if not 0.0 <= angle <= math.pi:
-        raise fault(f"must be from 0 to pi (rad), got {angle:g}")
-    return angle
-
-
-class RimSection(Section):
-    """Target on the outer lip, approach in the plane of the lip."""
-
-    family: Literal["rim"]
-    """axis: at the z axis from any side; rim: at the outer lip."""
-    radius: Size | None = None
-    """Radius of the lip, m; by default that of the profile's widest point."""
-    height: Metres | None = None
-    """z of the lip in the object's frame, m; by default that of the same point."""
-    spread: Annotated[
-        float,
-        AfterValidator(_half_turn),
-        Field(json_schema_extra={"minimum": 0, "maximum": math.pi}),
-    ] = math.pi / 3
-    """How far the approach may turn from the radial direction, to either side, rad."""
-
-    def fault_on(self, shape: ShapeKeys) -> str | None:
-        """Why there is nothing to grasp on that shape."""
-        if shape.revolve is not None or None not in (self.radius, self.height):
-            return None
-        return "the lip of a shape other than revolve needs both radius and height"
-
-
-FAMILIES: dict[str, type[AxisSection] | type[RimSection]] = {
+AnyGrasp: TypeAlias = (
+    AxisSection
+    | CylinderSideSection
+    | CylinderTopSection
+    | RimSection
+    | BoxFacesSection
+    | SphereGraspsSection
+    | HandleSection
+    | PosesSection
+    | TsrSection
+    | AntipodalSection
+    | FileSection
+)
+FAMILIES: dict[str, type[AnyGrasp]] = {
     "axis": AxisSection,
+    "cylinder_side": CylinderSideSection,
+    "cylinder_top": CylinderTopSection,
     "rim": RimSection,
+    "box_faces": BoxFacesSection,
+    "sphere": SphereGraspsSection,
+    "handle": HandleSection,
+    "poses": PosesSection,
+    "tsr": TsrSection,
+    "antipodal": AntipodalSection,
+    "file": FileSection,
 }
 
 
 def _known_family(value: object) -> object:
     """The grasp as written, once its family is known."""
+    if isinstance(value, str):
+        return value
     if not isinstance(value, dict):
-        raise fault("expected {family: ..., ...}")
+        raise fault("expected {family: ..., ...} or the name of a file of grasps")
     family = value.get("family")
     if "family" not in value:
         raise fault(f"missing key 'family'; known: {listed(FAMILIES)}")
@@ -75,8 +66,10 @@ def _known_family(value: object) -> object:
     return value
 
 
-def _section(value: dict[str, str] | AxisSection | RimSection) -> str:
-    """The tag of a grasp's section: the name of its class."""
+def _section(value: str | dict[str, str] | AnyGrasp) -> str:
+    """The tag of a grasp: the name of its section's class, or that of a file."""
+    if isinstance(value, str):
+        return "file name"
     if isinstance(value, Section):
         return type(value).__name__
     return FAMILIES[value["family"]].__name__
@@ -84,7 +77,17 @@ def _section(value: dict[str, str] | AxisSection | RimSection) -> str:
 
 GraspSection: TypeAlias = Annotated[
     Annotated[AxisSection, Tag("AxisSection")]
-    | Annotated[RimSection, Tag("RimSection")],
+    | Annotated[CylinderSideSection, Tag("CylinderSideSection")]
+    | Annotated[CylinderTopSection, Tag("CylinderTopSection")]
+    | Annotated[RimSection, Tag("RimSection")]
+    | Annotated[BoxFacesSection, Tag("BoxFacesSection")]
+    | Annotated[SphereGraspsSection, Tag("SphereGraspsSection")]
+    | Annotated[HandleSection, Tag("HandleSection")]
+    | Annotated[PosesSection, Tag("PosesSection")]
+    | Annotated[TsrSection, Tag("TsrSection")]
+    | Annotated[AntipodalSection, Tag("AntipodalSection")]
+    | Annotated[FileSection, Tag("FileSection")]
+    | Annotated[FileName, Tag("file name")],
     Discriminator(_section),
     BeforeValidator(_known_family),
 ]

@@ -92,19 +92,11 @@ def _task_faults(document: Document) -> Iterator[Fault]:
         if name not in objects and isinstance(document.get("objects"), dict):
             yield Fault(("tasks", i, "move"), unknown("object", name, objects))
     for name in objects:
-        if name in moved and not document.get("objects", name, "grasps"):
-            yield _without_grasps(document, name)
-
-
-def _without_grasps(document: Document, name: str) -> Fault:
-    message = (
-        f"'{name}' is to be moved and has no grasps; give it 'grasps', for example "
-        "{middle: {family: axis, along: [0.02, 0.08]}} (families: axis, rim)"
-    )
-    path: KeyPath = ("objects", name, "grasps")
-    if document.get(*path) is not None:
-        return Fault(path, message, at_key=True)
-    return Fault(path[:-1], message, at_key=True)
+        path: KeyPath = ("objects", name, "grasps")
+        if name in moved and document.get(*path) == {}:
+            message = f"'{name}' is to be moved and has no grasps; give it some, or"
+            message += " leave the key out for those of its shape"
+            yield Fault(path, message, at_key=True)
 
 
 def _fixture_faults(document: Document, path: KeyPath) -> Iterator[Fault]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated, Literal, TypeAlias
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 from typing_extensions import Self
 
+from mmplan.files.free_grasp_sections import FileSection
 from mmplan.files.grasp_sections import GraspSection
 from mmplan.files.pose_section import PoseSection
 from mmplan.files.profile import profile_fault
@@ -17,6 +19,7 @@ from mmplan.files.section import (
     Line,
     Metres,
     Name,
+    Positive,
     Section,
     fault,
     fault_at,
@@ -31,6 +34,8 @@ from mmplan.files.settings_sections import (
 from mmplan.files.shape_sections import ShapeKeys
 
 SCENE_VERSION = 1
+
+Friction = Annotated[Positive, Field(le=10.0)]
 
 
 def _name_or_numbers(value: object) -> str | None:
@@ -141,14 +146,28 @@ class ObjectSection(ShapeKeys):
     at: PoseSection
     """Pose of the object's frame in the world before the first task."""
     grasps: dict[Name, GraspSection] = Field(default_factory=dict)
-    """Ways to grasp the object, by names of your choice."""
+    """Ways to grasp it by names of your choice; by default those of its shape."""
+    mass: Positive | None = None
+    """Mass, kg; without it grasps are not judged by the weight that they hold."""
+    friction: Friction = 0.5
+    """Coefficient of friction between the fingers and the object."""
 
     @model_validator(mode="after")
     def _graspable(self) -> Self:
         for name, grasp in self.grasps.items():
+            if isinstance(grasp, str):
+                continue
             if message := grasp.fault_on(self):
                 raise fault_at(("grasps", name), message)
         return self
+
+    def grasp_files(self) -> Iterator[tuple[str, str]]:
+        """The grasps that come from files, by name, and the names of these."""
+        for name, grasp in self.grasps.items():
+            if isinstance(grasp, str):
+                yield name, grasp
+            elif isinstance(grasp, FileSection):
+                yield name, grasp.file
 
 
 class TaskSection(Section):

@@ -74,6 +74,17 @@ def around_body(shape: Shape, hand: HandSize) -> tuple[float, float] | None:
     return None if longest is None else _targets(longest, hand)
 
 
+def ends_of(shape: Shape) -> tuple[float, float]:
+    """The lowest and the highest z (m) of a shape that is no mesh."""
+    if isinstance(shape, Box):
+        return (-shape.size[2] / 2.0, shape.size[2] / 2.0)
+    if isinstance(shape, Sphere):
+        return (-shape.radius, shape.radius)
+    assert isinstance(shape, Cylinder | Capsule | Cone | Revolve), "meshes have none"
+    heights = profile_of(shape)[:, 1]
+    return (float(heights.min()), float(heights.max()))
+
+
 def narrowest(shape: Shape) -> float:
     """The least width (m) of a shape, of those round about z their least diameter."""
     if isinstance(shape, Box):

@@ -20,6 +20,8 @@ _SHORTEST = 0.5
 _STEM = 0.4
 # The thickest wall of a vessel and the least radius inside it, in widths of a finger.
 _WALL, _INSIDE = 1.0, 1.5
+# How much the radius of a wall changes per height at most.
+_WALL_SLOPE = 1.0
 
 
 @dataclass(frozen=True)
@@ -95,9 +97,13 @@ class Silhouette:
         """
         below = self.height >= self.height[-1] - hand.width
         inner, outer = self.inner[below], self.outer[below]
+        slope = np.abs(np.gradient(outer, self.height[below]))
+        steep = bool(np.all(slope <= _WALL_SLOPE))
         thin = bool(np.all(outer - inner <= _WALL * hand.width))
         roomy = bool(np.all(inner >= _INSIDE * hand.width))
-        return float((inner[-1] + outer[-1]) / 2.0) if thin and roomy else None
+        return (
+            float((inner[-1] + outer[-1]) / 2.0) if thin and roomy and steep else None
+        )
 
     def is_flat(self, hand: HandSize) -> bool:
         """Whether fingers above and below reach the edge, as of a plate."""

@@ -1,0 +1,153 @@
+"""Antipodal grasps of triangle meshes: two opposite places of the surface."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from mmplan.array_cache import cached
+from mmplan.collision.decomposition import Triangles
+from mmplan.collision.hand_room import HandRoom
+from mmplan.collision.hand_size import hand_size
+from mmplan.collision.meshes import read_mesh, read_triangles
+from mmplan.exceptions import InputError
+from mmplan.grasps.family import poses_from
+from mmplan.grasps.hand import HandSize
+from mmplan.robot import Robot
+from mmplan.shapes import Array, Mesh
+
+if TYPE_CHECKING:
+    import trimesh
+
+# Rounds of sampling before fewer grasps than wanted are taken for all there are.
+_MOST_ROUNDS = 12
+# How many candidates are tried for each grasp that is wanted, each round.
+_TRIES = 2.0
+# The thinnest thing between the fingers that is not noise of the mesh, m.
+_THINNEST = 1e-3
+# Rays begin this far inside the surface, as a share of the hand's opening.
+_INSET = 1e-4
+
+
+class Pairs(NamedTuple):
+    """Two places on the surface that pads can press together, (n, 3) each, m."""
+
+    first: Array
+    second: Array
+
+
+def antipodal_poses(
+    mesh: Mesh, robot: Robot, friction: float, samples: int, seed: int
+) -> Array:
+    """Tool poses (n, 4, 4) of at most `samples` grasps, hand free of the object.
+
+    Points are drawn by area, and a ray goes from each into the object, at random
+    within half of the friction cone about the inner normal. Where it comes out, the
+    two are a pair if they are at most as far apart as the hand opens, and the line
+    between them is in the friction cones of both. The tool stands in the middle,
+    turned about that line at random; where the palm or an opened finger meets the
+    surface, the grasp is left out. The same seed gives the same grasps, and they are
+    kept in the user's cache folder under the hash of mesh, hand and settings.
+
+    Raises:
+        InputError: The mesh cannot be read, or the extra `meshes` is not installed.
+    """
+    model = read_mesh(mesh)
+    vertices, triangles = read_triangles(model)
+    room = HandRoom(robot)
+    key = hashlib.sha256(vertices.tobytes() + triangles.tobytes() + room.signature())
+    key.update(repr((friction, samples, seed, _TRIES)).encode())
+
+    def sample() -> list[Array]:
+        surface = _surface(mesh, vertices, triangles)
+        hand = hand_size(robot)
+        rng = np.random.default_rng(seed)
+        found = [np.empty((0, 4, 4))]
+        for _ in range(_MOST_ROUNDS):
+            pairs = antipodal_pairs(
+                surface, hand, friction, int(_TRIES * samples) + 1, rng
+            )
+            T = _poses(pairs, hand, rng)
+            widths = np.linalg.norm(pairs.second - pairs.first, axis=1)
+            found.append(T[room.is_free(model, T, widths)])
+            if sum(map(len, found)) >= samples:
+                break
+        return [np.concatenate(found)[:samples]]
+
+    (poses,) = cached("grasps", key.hexdigest(), sample)
+    return poses
+
+
+def antipodal_pairs(
+    surface: trimesh.Trimesh,
+    hand: HandSize,
+    friction: float,
+    n: int,
+    rng: np.random.Generator,
+) -> Pairs:
+    """The pairs found from n points of the surface."""
+    first, face = _points_by_area(surface, n, rng)
+    normals = surface.face_normals
+    cone = np.arctan(friction)
+    inward = _aslant(-normals[face], 0.5 * cone, rng)
+    start = first + _INSET * hand.opening * inward
+    hits, ray, hit_face = surface.ray.intersects_location(start, inward)
+    apart = np.einsum("ij,ij->i", hits - first[ray], inward[ray])
+    comes_out = np.einsum("ij,ij->i", normals[hit_face], inward[ray])
+    good = (apart >= _THINNEST) & (apart <= hand.widest) & (comes_out >= np.cos(cone))
+    # Of several ways out of the object one is taken, any.
+    order = rng.permutation(len(ray))
+    order = order[good[order]]
+    _, chosen = np.unique(ray[order], return_index=True)
+    rows = order[chosen]
+    return Pairs(first[ray[rows]], hits[rows])
+
+
+def _surface(mesh: Mesh, vertices: Array, triangles: Triangles) -> trimesh.Trimesh:
+    try:
+        import trimesh
+    except ImportError as error:
+        raise InputError(
+            f"{mesh.path}: grasps of a mesh are sampled with an extra: "
+            "pip install 'mmplan[meshes]'; or give the object 'grasps'"
+        ) from error
+    return trimesh.Trimesh(vertices, triangles, process=False)
+
+
+def _points_by_area(
+    surface: trimesh.Trimesh, n: int, rng: np.random.Generator
+) -> tuple[Array, npt.NDArray[np.int64]]:
+    """Points (n, 3) drawn evenly from the surface, and their triangles (n,)."""
+    area = surface.area_faces
+    face = rng.choice(len(area), n, p=area / area.sum())
+    a, b = np.sort(rng.random((2, n)), axis=0)
+    corners = surface.triangles[face]
+    weights = np.stack([a, b - a, 1.0 - b], axis=1)
+    return np.einsum("nc,nci->ni", weights, corners), face
+
+
+def _aslant(directions: Array, most: float, rng: np.random.Generator) -> Array:
+    """Directions (n, 3) turned at random by at most an angle (rad)."""
+    other = rng.normal(size=directions.shape)
+    across = np.cross(directions, other)
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    angle = most * np.sqrt(rng.random((len(directions), 1)))
+    return np.cos(angle) * directions + np.sin(angle) * across
+
+
+def _poses(pairs: Pairs, hand: HandSize, rng: np.random.Generator) -> Array:
+    """Tool poses (n, 4, 4) in the middle of pairs, turned about the line between.
+
+    The pads are long: the tool stands up to a third of a finger's width off.
+    """
+    closing = pairs.second - pairs.first
+    closing /= np.linalg.norm(closing, axis=1, keepdims=True)
+    approach = np.cross(closing, rng.normal(size=closing.shape))
+    approach /= np.linalg.norm(approach, axis=1, keepdims=True)
+    off = hand.width / 3.0 * rng.uniform(-1.0, 1.0, (len(closing), 1))
+    return poses_from(
+        approach, closing, (pairs.first + pairs.second) / 2.0 + off * approach
+    )
