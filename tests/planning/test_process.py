@@ -82,6 +82,22 @@ assert not plan(round_joints, iterations=100).found
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
+def test_drives_leak_nothing_either():
+    done = run("""
+world.model.addJoint(2, pin.JointModelRZ(), pin.SE3.Identity(), "heading")
+bounds = np.array([[-1.0, 1.0], [-1.0, 1.0], [-np.inf, np.inf]])
+ends = np.array([[-0.5, -0.5, 0.0], [0.5, -0.5, 0.0]])
+def drive(**settings):
+    settings, rng = PlannerSettings(**settings), np.random.default_rng(0)
+    car = ReedsShepp(0.1)
+    return plan_drive(world, *ends, np.arange(3), bounds, car, settings, rng).drive
+assert drive() is not None
+world.closed = True
+assert drive(iterations=50) is None
+""")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
 def test_an_exception_inside_a_check_comes_out_and_leaks_nothing():
     done = run("""
 def fail(q):
