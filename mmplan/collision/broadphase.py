@@ -25,7 +25,7 @@ Mask = npt.NDArray[np.bool_]
 
 # Added to all bounds so that rounding never hides a touch, m.
 _PADDING = 1e-6
-# Configurations looked at in one go: few at first, as a hit among them may be enough,
+# Configurations looked at in one go: few at first where a hit among them may be enough,
 # and not so many that the arrays leave the cache.
 _FIRST_CHUNK, _LAST_CHUNK = 16, 256
 
@@ -82,16 +82,23 @@ class Broadphase:
         self._watched = self._links.any_of(watched.T).T  # (links, owners)
         self._self_pairs = _self_pairs(moving, pairs, self._links)
 
-    def suspects(self, q: Array) -> Iterator[Suspects]:
-        """The pairs that may touch at configurations q (n, nq), in batches by row."""
-        start, size = 0, _FIRST_CHUNK
+    def suspects(self, q: Array, *, hasty: bool = False) -> Iterator[Suspects]:
+        """The pairs that may touch at configurations q (n, nq), in batches by row.
+
+        A `hasty` search starts with few configurations, for whom one hit is enough.
+        """
+        start, size = 0, _FIRST_CHUNK if hasty else _LAST_CHUNK
         while start < len(q):
             T = self._kinematics(q[start : start + size])
-            links = moved_bounds(self._link_bounds, T[:, self._link_joints])
-            found = self._with_static(T, links), self._among_moving(T, links)
-            for row, pair in found:
+            for row, pair in self.suspects_at(T):
                 yield Suspects(row + start, pair)
             start, size = start + size, min(4 * size, _LAST_CHUNK)
+
+    def suspects_at(self, T: Array) -> Iterator[Suspects]:
+        """The pairs that may touch, from poses (n, njoints, 4, 4) of all joints."""
+        links = moved_bounds(self._link_bounds, T[:, self._link_joints])
+        yield self._with_static(T, links)
+        yield self._among_moving(T, links)
 
     def _with_static(self, T: Array, links: Bounds) -> Suspects:
         """Link against owner, then body against owner, then body against body."""

@@ -103,11 +103,36 @@ class CollisionWorld:
 
     def base_alone(self) -> CollisionWorld:
         """The world in which arm, hand and what they carry are left out."""
-        return replace(self, pair_filter=_spare_the_arm)
+        return self._checking(_spare_the_arm)
 
     def fingers_alone(self) -> CollisionWorld:
         """The world in which only pairs with a finger link are checked."""
-        return replace(self, pair_filter=_with_a_finger)
+        return self._checking(_with_a_finger)
+
+    def hand_in_scene(self) -> CollisionWorld:
+        """The world in which only the hand is checked, against what does not move.
+
+        The hand is the fingers and all that does not move against the tool.
+        """
+        return self._checking(self._is_hand_in_scene)
+
+    def except_hand_in_scene(self) -> CollisionWorld:
+        """The world in which all is checked but for what `hand_in_scene` checks."""
+        return self._checking(lambda *pair: not self._is_hand_in_scene(*pair))
+
+    def _is_hand_in_scene(self, first: Body, second: Body) -> bool:
+        with_tool = (
+            body.kind == "finger" or body.joint == self.robot.tool_joint
+            for body in (first, second)
+        )
+        return any(with_tool) and 0 in (first.joint, second.joint)
+
+    def _checking(self, rule: Callable[[Body, Body], bool]) -> CollisionWorld:
+        """The world in which only pairs that obey a rule are checked, of those now."""
+        now = self.pair_filter
+        if now is None:
+            return replace(self, pair_filter=rule)
+        return replace(self, pair_filter=lambda *pair: now(*pair) and rule(*pair))
 
     def keeping(self, clearance: float, *ends: Array) -> CollisionWorld:
         """The world in which a distance (m) below `clearance` counts as collision.
@@ -156,6 +181,10 @@ class CollisionWorld:
     def in_collision(self, q: Array) -> npt.NDArray[np.bool_]:
         """Which of the configurations (n, nq) are in collision, (n,)."""
         return self._checker.in_collision(q)
+
+    def in_collision_at(self, T_world_joint: Array) -> npt.NDArray[np.bool_]:
+        """The same from the poses (n, njoints, 4, 4) of all joints that are checked."""
+        return self._checker.in_collision_at(T_world_joint)
 
     def any_collision(self, q: Array) -> bool:
         """Whether any of the configurations (n, nq) is in collision."""

@@ -19,6 +19,7 @@ from mmplan.scoring.term import Grasped
 from mmplan.shapes import Array
 
 Indices = npt.NDArray[np.int64]
+Mask = npt.NDArray[np.bool_]
 
 # Configurations bounded in one go, so that the arrays stay in the cache.
 _CHUNK = 256
@@ -43,9 +44,10 @@ class Branches(NamedTuple):
 
 
 class Best(NamedTuple):
-    """The best feasible branch of each pair that has one."""
+    """The best feasible configuration of each pair that has one."""
 
-    place: Indices  # (k,), of the branch
+    row: Indices  # (k,), the pair
+    q: Array  # (k, nq)
     terms: Array  # (k, 3), weighted
 
 
@@ -72,38 +74,47 @@ class BranchSearch:
     def best(self, branches: Branches, outcome: npt.NDArray[np.int8]) -> Best:
         """The branch of the greatest total of each pair, the first of equals.
 
-        `outcome` (n,) of the pairs that have branches is raised to what the furthest
+        `outcome` (n,) of the pairs, COLLISION at first, is raised to what the furthest
         of their branches came to.
         """
-        terms = np.zeros((len(branches.row), 3))
-        if len(terms) == 0:
-            return Best(branches.row, terms)
-        terms[:, 0] = branches.quality
-        terms[:, 1], clutter = self._bounds(branches.grasped)
-        terms *= self._factors
-        bound = terms.sum(axis=1) + self._factors[2] * clutter
+        feasibility = self._feasibility[branches.grasped.end]
+        hand = feasibility.hand_outcomes(branches.grasped, branches.opened)
+        left = np.flatnonzero(hand != Outcome.COLLISION)
+        branches, hand = branches.take(left), hand[left]
+        fits = hand == Outcome.SCORED
+        terms, bound = self._bounds(branches, fits)
 
         def examine(places: Indices) -> Array:
-            some = branches.take(places)
-            feasibility = self._feasibility[some.grasped.end]
-            found = feasibility.outcomes(some.grasped.q, some.opened)
+            some, open_fits = branches.take(places), fits[places]
+            found = feasibility.outcomes(some.grasped.q, some.opened, open_fits)
             np.maximum.at(outcome, some.row, found)
-            free = found == Outcome.SCORED
-            C = self._clutter(some.grasped.take(np.flatnonzero(free)))
+            free = np.flatnonzero(found == Outcome.SCORED)
+            C = self._clutter(some.grasped.take(free))
             terms[places[free], 2] = self._factors[2] * C
-            return np.where(free, terms[places].sum(axis=1), -np.inf)
+            value = np.full(len(places), -np.inf)
+            value[free] = terms[places[free]].sum(axis=1)
+            # Where the opened hand does not fit, one branch that is free but for that
+            # says all there is to know.
+            value[~open_fits & (found > Outcome.COLLISION)] = np.inf
+            return value
 
         place = best_of_rows(branches.row, bound, examine)
-        return Best(place, terms[place])
+        place = place[fits[place]]
+        return Best(branches.row[place], branches.grasped.q[place], terms[place])
 
-    def _bounds(self, grasped: Grasped) -> tuple[Array, Array]:
-        """M, (m,), and upper bounds of C, (m,)."""
-        m = len(grasped.q)
-        M, C = np.empty(m), np.empty(m)
-        for start in range(0, m, _CHUNK):
-            chunk = np.arange(start, min(start + _CHUNK, m))
-            some = grasped.take(chunk)
-            T = self._kinematics(some.q)
-            M[chunk] = self._manipulability.at(T)
-            C[chunk] = self._clutter.bound(some, T)
-        return M, C
+    def _bounds(self, branches: Branches, fits: Mask) -> tuple[Array, Array]:
+        """Terms (m, 3), clutter left out, and upper bounds of totals, (m,).
+
+        Both are 0 for those whose hand does not fit.
+        """
+        terms, clutter = np.zeros((len(fits), 3)), np.zeros(len(fits))
+        places = np.flatnonzero(fits)
+        for start in range(0, len(places), _CHUNK):
+            chunk = places[start : start + _CHUNK]
+            grasped = branches.grasped.take(chunk)
+            T = self._kinematics(grasped.q)
+            terms[chunk, 0] = branches.quality[chunk]
+            terms[chunk, 1] = self._manipulability.at(T)
+            clutter[chunk] = self._clutter.bound(grasped, T)
+        terms *= self._factors
+        return terms, terms.sum(axis=1) + self._factors[2] * clutter

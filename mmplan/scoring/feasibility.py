@@ -14,7 +14,9 @@ import numpy.typing as npt
 from mmplan.collision import CollisionWorld, Contact
 from mmplan.problem import Problem
 from mmplan.robot import Robot
+from mmplan.scoring.hand_poses import HandPoses
 from mmplan.scoring.outcome import Outcome
+from mmplan.scoring.term import Grasped, RowCache
 from mmplan.shapes import Array
 from mmplan.zones import base_clearances
 
@@ -54,6 +56,13 @@ class Feasibility:
         self._T_world_object = world.standing[object_name]
         self._open_fingers = world.fingers_alone()
         self._closed_world = world.permit_touch(object_name, fingers=True)
+        # What the hand does to the scene depends on the grasp alone.
+        self._hand_open = self._open_fingers.hand_in_scene()
+        self._hand_closed = self._closed_world.hand_in_scene()
+        self._rest_open = self._open_fingers.except_hand_in_scene()
+        self._rest_closed = self._closed_world.except_hand_in_scene()
+        self._hand_poses = HandPoses(problem.robot)
+        self._hands = RowCache()
         self._base_world = world.base_alone()
 
     def base_outcomes(self, q_base: Array) -> npt.NDArray[np.int8]:
@@ -84,17 +93,36 @@ class Feasibility:
         q[..., robot.arm.indices] = solutions.q
         return Arms(q, solutions.exists, solutions.within)
 
-    def outcomes(self, q: Array, opened: Array) -> npt.NDArray[np.int8]:
+    def hand_outcomes(self, grasped: Grasped, opened: Array) -> npt.NDArray[np.int8]:
+        """What the hand by itself comes to in the scene, (n,), whatever arm holds it.
+
+        COLLISION, HAND_OPEN_COLLISION or SCORED; `opened` (n, hand joints) is the hand
+        before it closes.
+        """
+
+        def of_grasps(new: npt.NDArray[np.int64]) -> Array:
+            T, q = grasped.T_world_tool[new], grasped.q[new]
+            closed = self._hand_closed.in_collision_at(self._hand_poses(T, q))
+            q[:, self._robot.hand.indices] = opened[new]
+            hit = self._hand_open.in_collision_at(self._hand_poses(T, q))
+            outcome = np.where(hit, Outcome.HAND_OPEN_COLLISION, Outcome.SCORED)
+            return np.where(closed, Outcome.COLLISION, outcome)[:, None]
+
+        rows = self._hands.rows(grasped.grasp.tolist(), of_grasps)
+        return rows[:, 0].astype(np.int8)
+
+    def outcomes(self, q: Array, opened: Array, fits: Mask) -> npt.NDArray[np.int8]:
         """COLLISION, HAND_OPEN_COLLISION or SCORED for configurations q (m, nq), (m,).
 
-        `opened` (m, hand joints) is the hand before it closes.
+        The closed hand is known to fit in the scene; `fits` (m,) says whether it does
+        opened, which is at `opened` (m, hand joints).
         """
-        outcome = np.full(len(q), Outcome.COLLISION, np.int8)
-        free = np.flatnonzero(~self._closed_world.in_collision(q))
-        q_open = q[free]
-        q_open[:, self._robot.hand.indices] = opened[free]
-        hit = self._open_fingers.in_collision(q_open)
-        outcome[free] = np.where(hit, Outcome.HAND_OPEN_COLLISION, Outcome.SCORED)
+        outcome = np.full(len(q), Outcome.HAND_OPEN_COLLISION, np.int8)
+        outcome[self._rest_closed.in_collision(q)] = Outcome.COLLISION
+        left = np.flatnonzero(fits & (outcome != Outcome.COLLISION))
+        q_open = q[left]
+        q_open[:, self._robot.hand.indices] = opened[left]
+        outcome[left[~self._rest_open.in_collision(q_open)]] = Outcome.SCORED
         return outcome
 
     def base_contacts(self, q_base: Array) -> tuple[Contact, ...]:

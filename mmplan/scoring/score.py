@@ -195,10 +195,9 @@ class ScoreFunction:
         result[:, 4:-1] = np.nan
         outcome, branches = self._branches(end, q_base, grasps)
         best = self._search.best(branches, outcome)
-        row = branches.row[best.place]
-        result[row, 0] = best.terms.sum(axis=1)
-        result[row, 1:4] = best.terms
-        result[row, 4:-1] = branches.grasped.q[best.place]
+        result[best.row, 0] = best.terms.sum(axis=1)
+        result[best.row, 1:4] = best.terms
+        result[best.row, 4:-1] = best.q
         result[:, -1] = outcome
         return result
 
