@@ -19,6 +19,10 @@ from mmplan.planning.curve import Curve
 from mmplan.planning.joints import MotionLimits
 from mmplan.shapes import Array
 
+# The solver gives up where its numbers differ too much in size, as with a slow torso
+# and a quick wrist; drawn at another scale the same curve is solved.
+_SCALES = (1.0, 1e-2, 1e-4, 1e-3)
+
 
 def fastest_speeds(curve: Curve, grid: Array, limits: MotionLimits) -> Array:
     """The greatest speeds ds/dt (n,) at points `grid` (n,) of a curve, rest to rest.
@@ -29,6 +33,17 @@ def fastest_speeds(curve: Curve, grid: Array, limits: MotionLimits) -> Array:
     Raises:
         ArithmeticError: if toppra finds no solution; slow enough there always is one.
     """
+    for scale in _SCALES:
+        speeds = _speeds(curve, grid, limits, scale)
+        if speeds is not None and np.all(speeds[1:-1] > 0.0):
+            return np.array([0.0, *speeds[1:-1], 0.0])
+    raise ArithmeticError("toppra found no time parametrization of a path")
+
+
+def _speeds(
+    curve: Curve, grid: Array, limits: MotionLimits, scale: float
+) -> Array | None:
+    """The speeds (n,) that toppra finds on the curve drawn at a scale, if any."""
     toppra = _toppra()
     moving = curve.moving
     velocity, acceleration = limits.velocity[moving], limits.acceleration[moving]
@@ -39,25 +54,29 @@ def fastest_speeds(curve: Curve, grid: Array, limits: MotionLimits) -> Array:
             toppra.constraint.DiscretizationType.Interpolation,
         ),
     ]
-    path = _MovingPart(curve, moving)
-    method = toppra.algorithm.TOPPRA(constraints, path, grid, solver_wrapper="seidel")
+    path = _MovingPart(curve, moving, scale)
+    method = toppra.algorithm.TOPPRA(
+        constraints, path, scale * grid, solver_wrapper="seidel"
+    )
     _, speeds, _ = method.compute_parameterization(0.0, 0.0)
-    if speeds is None or not np.all(speeds[1:-1] > 0.0):
-        raise ArithmeticError("toppra found no time parametrization of a path")
-    return np.array([0.0, *speeds[1:-1], 0.0])
+    return None if speeds is None else speeds / scale
 
 
 class _MovingPart:
-    """The joints of a curve that move, as toppra wants a path."""
+    """What moves of a curve, drawn `scale` times as long, as toppra wants a path."""
 
-    def __init__(self, curve: Curve, moving: npt.NDArray[np.int64]) -> None:
+    def __init__(
+        self, curve: Curve, moving: npt.NDArray[np.int64], scale: float
+    ) -> None:
         self._curve = curve
         self._moving = moving
+        self._scale = scale
         self.dof = len(moving)
-        self.path_interval = np.array([0.0, curve.length])
+        self.path_interval = np.array([0.0, scale * curve.length])
 
     def __call__(self, s: Array, order: int = 0) -> Array:
-        return self._curve(s, order)[:, self._moving]
+        moved = self._curve(s / self._scale, order)[:, self._moving]
+        return moved / self._scale**order
 
 
 def _both_ways(limits: Array) -> Array:
