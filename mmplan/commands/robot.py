@@ -85,6 +85,15 @@ def _add_import(actions: Any) -> None:
         metavar=("RADIUS", "HEIGHT"),
         help="cylinder that the root stands on, m; 0 0 for none",
     )
+    command.add_argument(
+        "--tight",
+        type=float,
+        default=40.0,
+        metavar="MM",
+        help="a link's hull may stand off its mesh this far (a hand's by half of "
+        "that), else the mesh is cut into convex pieces, which takes a minute a "
+        "link; default: 40",
+    )
     add_json(command)
     quiet = "no progress and no result on the terminal"
     command.add_argument("--quiet", action="store_true", help=quiet)
@@ -134,7 +143,8 @@ def _inspect(options: argparse.Namespace) -> int:
 
 
 def _import(options: argparse.Namespace) -> int:
-    from mmplan.robot_setup.importing import Wishes, import_robot
+    from mmplan.robot_setup.importing import import_robot
+    from mmplan.robot_setup.wishes import Wishes
     from mmplan.terminal import show
 
     hand = (
@@ -149,6 +159,7 @@ def _import(options: argparse.Namespace) -> int:
         srdf=options.srdf,
         package_dirs=tuple(options.package_dir),
         pedestal=options.pedestal and tuple(options.pedestal),
+        tight=options.tight / 1000.0,
     )
     imported = import_robot(options.urdf, wishes, options.output)
     if options.json:

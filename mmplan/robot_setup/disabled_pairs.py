@@ -37,12 +37,13 @@ def disabled_pairs(
     `given` are those of an SRDF, links and reason, which hold whatever is found. Of
     the others these are disabled: neighbours; links that overlap in every sample;
     links that overlap in half of the samples and with all joints at 0; fingers that
-    meet when the hand closes or opens; and links that never come near each other.
+    meet each other or the palm when the hand closes or opens; and links that never come
+    near each other.
     """
     said = {frozenset(pair[:2]): pair[2] for pair in given}
     beside = neighbours(robot)
     at_zero = links.overlaps(robot.q_neutral[None])[0]
-    meeting = _meeting_fingers(robot, links)
+    meeting = _meeting_in_hand(robot, links)
     found = []
     for k, pair in enumerate(links.pairs):
         both = frozenset(pair)
@@ -52,7 +53,7 @@ def disabled_pairs(
         elif both in beside:
             reason = "adjacent"
         elif pair in meeting:
-            reason = "fingers that meet when the hand closes or opens"
+            reason = "fingers or palm, which meet when the hand closes or opens"
         else:
             reason = _reason(evidence[pair], bool(at_zero[k]))
         if reason is not None:
@@ -75,18 +76,23 @@ def _reason(evidence: Evidence, at_zero: bool) -> str | None:
     return None
 
 
-def _meeting_fingers(robot: Robot, links: SelfCollisions) -> Set[LinkPair]:
-    """Pairs of links moved by the hand's joints that overlap in its named states."""
-    fingers = {
-        robot.link_of(body)
-        for body in robot.geometry.geometryObjects
-        if robot.kind_of(body) == "finger"
-    }
+def _meeting_in_hand(robot: Robot, links: SelfCollisions) -> Set[LinkPair]:
+    """Pairs of links of the hand that overlap where it is open, or closed."""
+    hand = hand_links(robot)
     q = np.tile(robot.q_neutral, (2, 1))
     q[:, robot.hand.indices] = [robot.hand_open, robot.hand_closed]
     meet = np.asarray(links.overlaps(q).any(axis=0))
     return {
         pair
         for pair, meets in zip(links.pairs, meet, strict=True)
-        if meets and set(pair) <= fingers
+        if meets and set(pair) <= hand
+    }
+
+
+def hand_links(robot: Robot) -> set[str]:
+    """The fingers, and the links that do not move against the tool."""
+    return {
+        robot.link_of(body)
+        for body in robot.geometry.geometryObjects
+        if robot.kind_of(body) == "finger" or body.parentJoint == robot.tool_joint
     }

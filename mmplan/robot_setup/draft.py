@@ -32,6 +32,7 @@ class Draft:
 
     folder: Path
     data: dict[str, Any]
+    trunk: frozenset[str]  # links that are fixed to the root of the URDF
     notes: list[str] = field(default_factory=list)
 
     @property

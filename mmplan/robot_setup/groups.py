@@ -9,7 +9,7 @@ from xml.etree import ElementTree as ET
 from mmplan.exceptions import InputError
 from mmplan.files.suggestions import unknown
 from mmplan.files.urdf import UrdfJoint, urdf_facts
-from mmplan.files.urdf_edit import joint_link
+from mmplan.files.urdf_edit import joint_link, root_link
 
 # An arm has no more turning joints; those nearer to the root are held still.
 _MOST = 7
@@ -22,7 +22,7 @@ class Groups:
     arm: tuple[str, ...]
     hand: tuple[str, ...]  # without those that mimic others
     flange: str  # the link that the last joint of the arm moves
-    held: tuple[str, ...]  # on the way to the tip, but not of the arm
+    trunk: frozenset[str]  # links that are fixed to the root
     notes: tuple[str, ...]
 
 
@@ -55,7 +55,8 @@ def guess_groups(
     below = {j.get("name", "") for j in _below(root, flange)}
     free = [n for n, joint in facts.joints.items() if n in below and _moves(joint)]
     fingers = tuple(hand) or tuple(n for n in free if n not in chosen)
-    return Groups(chosen, fingers, flange, held, tuple(_notes(chosen, held, fingers)))
+    notes = tuple(_notes(chosen, held, fingers))
+    return Groups(chosen, fingers, flange, _trunk(root), notes)
 
 
 def _notes(arm: Sequence[str], held: Sequence[str], hand: Sequence[str]) -> list[str]:
@@ -88,6 +89,20 @@ def _way(root: ET.Element, tip: str) -> list[ET.Element]:
         way.append(above[tip])
         tip = joint_link(above[tip], "parent")
     return way[::-1]
+
+
+def _trunk(root: ET.Element) -> frozenset[str]:
+    """The root link and all that fixed joints hold to it."""
+    trunk = {root_link(root)}
+    fixed = [j for j in root.findall("joint") if j.get("type") == "fixed"]
+    while (
+        new := {
+            joint_link(j, "child") for j in fixed if joint_link(j, "parent") in trunk
+        }
+        - trunk
+    ):
+        trunk |= new
+    return frozenset(trunk)
 
 
 def _below(root: ET.Element, link: str) -> list[ET.Element]:

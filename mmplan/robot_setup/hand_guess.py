@@ -45,7 +45,7 @@ def guess_hand(robot: Robot) -> HandGuess:
 def _ends(
     robot: Robot, lower: Array, upper: Array, middle: Array
 ) -> tuple[Array, Array]:
-    """The hand open and closed, (hand joints,) each, its followers where they belong."""
+    """The hand open and closed, (hand joints,) each."""
     opened, closed = middle.copy(), middle.copy()
     centre = _centre(robot, middle)
     for k in np.flatnonzero(robot.hand.leads):

@@ -16,11 +16,11 @@ from mmplan.collision.standoff import Standoff, standoff
 from mmplan.shapes import Array
 
 # A hull that stands off the mesh by no more is tight, m; on links of the hand, whose
-# hollows are where things are held, it must be closer.
-TIGHT, TIGHT_HAND = 0.03, 0.01
+# hollows are where things are held, by no more than half of that.
+TIGHT = 0.04
 # Pieces that leave more of the mesh uncovered are worse than a hull that is too big, m.
 _MOST_UNCOVERED = 0.002
-_EFFORT = Effort(concavity=0.1, iterations=40)
+_EFFORT = Effort(concavity=0.1, iterations=20, pieces=8)
 
 
 class Choice(NamedTuple):
@@ -45,7 +45,7 @@ def choose(
     """
     in_hand = set(hand)
     for link, surfaces in meshes.items():
-        limit = min(tight, TIGHT_HAND) if link in in_hand else tight
+        limit = tight / 2 if link in in_hand else tight
         yield _chosen(link, surfaces, limit)
 
 

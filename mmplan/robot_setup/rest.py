@@ -56,9 +56,16 @@ class _Search:
         if not len(self._start):
             raise NoPlanError(
                 f"{robot.name}: the robot is in collision with itself in all of "
-                f"{_SAMPLES} random configurations; do the collision bodies of its "
-                "links fit?"
+                f"{_SAMPLES} random configurations, most often {self._worst(draw)}; do "
+                "the collision bodies of these links fit?"
             )
+
+    def _worst(self, q_arm: Array) -> str:
+        """The checked pair of links that overlaps most often."""
+        overlaps = self._links.overlaps(with_arm(self._robot, q_arm[:200])).sum(axis=0)
+        counts = dict(zip(self._links.pairs, overlaps.tolist(), strict=True))
+        worst = max(self._checked, key=lambda pair: counts[pair])
+        return f"{worst[0]} / {worst[1]}"
 
     def readiness(self, q_arm: Array) -> Array:
         """A cost that falls with the room to the limits and the manipulability."""

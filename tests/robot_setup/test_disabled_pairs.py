@@ -88,7 +88,7 @@ def test_pairs_disabled_by_hand_are_found() -> None:
             assert evidence[key].distance >= LEAST_DISTANCE
     assert found[frozenset({"upper_arm", "forearm"})] == "adjacent"
     meet = found[frozenset({"finger_left", "finger_right"})]
-    assert meet.startswith("fingers that meet")
+    assert meet.startswith("fingers or palm")
 
 
 def test_neighbours_of_the_puma() -> None:
