@@ -1,4 +1,4 @@
-"""Nevergrad's portfolio NGOpt on the joint vector."""
+"""Nevergrad's portfolio Shiwa on the joint vector."""
 
 from __future__ import annotations
 
@@ -18,10 +18,14 @@ _STEP = 0.2  # first step of angles, in shares of a turn
 
 
 class NevergradPortfolio(Contender):
-    """NGOpt, which picks an algorithm by the number of genes and the budget.
+    """Shiwa, which picks an algorithm by the number of genes and the budget.
+
+    J. Liu et al., "Versatile black-box optimization", GECCO 2020. Its successor NGOpt
+    will not do: with small budgets it fits surrogates for as long as 20 s, so that its
+    results depend on the clock, and its surrogates fail with numpy 2.4.
 
     Joint vectors are drawn at random until one works at both ends, as for CMA-ES;
-    NGOpt gets that one as its first suggestion and what is left of the budget. Angles
+    Shiwa gets that one as its first suggestion and what is left of the budget. Angles
     are unbounded parameters, other genes are bounded by the library.
     """
 
@@ -66,7 +70,7 @@ class NevergradPortfolio(Contender):
         # Its parameters know this generator of numpy's alone.
         genes.random_state = np.random.RandomState(seed_of(self.rng))
         budget = max(self._left // 2, _BATCH)  # in vectors, most of which cost two
-        portfolio = ng.optimizers.NGOpt(genes, budget=budget, num_workers=_BATCH)
+        portfolio = ng.optimizers.Shiwa(genes, budget=budget, num_workers=_BATCH)
         portfolio.suggest((vector[~angles], vector[angles]))
         return portfolio
 
