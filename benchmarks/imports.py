@@ -16,7 +16,7 @@ from time import perf_counter
 from typing import NamedTuple
 
 from mmplan.assets import example_robots
-from mmplan.exceptions import MmplanError
+from mmplan.exceptions import InputError, MmplanError
 from mmplan.robot_build import load_robot
 from mmplan.robot_setup.importing import import_robot
 from mmplan.robot_setup.measurements import measure_ik
@@ -70,9 +70,9 @@ def row(name: str, case: Case, folder: Path) -> str:
         imported = import_robot(urdf, wishes, folder / name)
         robot = load_robot(imported.path)
     except MmplanError as error:
-        lines = str(error).splitlines()
-        more = f" (and {len(error.diagnostics) - 1} more)" if len(lines) > 3 else ""  # type: ignore[attr-defined]
-        text = lines[0].replace(f"{urdf.parent}/", "").replace("|", "\\|")
+        text = str(error).splitlines()[0].replace(f"{urdf.parent}/", "")
+        count = len(error.diagnostics) if isinstance(error, InputError) else 1
+        more = f" (the first of {count} faults)" if count > 1 else ""
         return f"{asked} - | - | - | - | refused: {text}{more} |"
     seconds = perf_counter() - start
     ik = measure_ik(robot, 500)

@@ -112,14 +112,19 @@ def _add_urdf(actions: Any) -> None:
 
 
 def _add_robot(command: argparse.ArgumentParser) -> None:
-    command.add_argument("robot", help="a robot.yaml, or the name of a shipped robot")
+    command.add_argument(
+        "robot", help="a robot.yaml, its folder, or the name of a shipped robot"
+    )
 
 
 def _described(name: str) -> RobotDescription:
     from mmplan.files.suggestions import unknown
     from mmplan.robot_file import load_robot_description
 
-    path = assets.find_robot(name, Path())
+    inside = Path(name) / assets.ROBOT_FILE
+    path = inside if assets.is_file(inside) else assets.find_robot(name, Path())
+    if path is None and name.endswith(".yaml"):
+        raise InputError(f"{name}: no such file")
     if path is None:
         raise InputError(unknown("robot", name, assets.robot_names()))
     return load_robot_description(path)
