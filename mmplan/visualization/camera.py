@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,6 +18,8 @@ _FORM = "AZIMUTH,ELEVATION[,DISTANCE[,X,Y,Z]] in degrees and metres"
 
 # Directions that are tried, degrees.
 _AZIMUTHS, _ELEVATIONS = range(0, 360, 15), (22.0, 38.0, 55.0)
+# Of the light, beside the camera, degrees; of equals the first is taken.
+_SUNS = (50.0, -50.0, 20.0, -20.0)
 _SMALL = 0.004  # m², the size of triangles that hide nothing
 _ROOM = 0.45  # m about the points that matter, for the robot itself
 _CLOSE = 1.3  # m, from the object in the pictures of start and goal
@@ -67,6 +69,16 @@ def best_camera(exhibit: Exhibit, aspect: float = 1.6) -> Camera:
     radius = float(np.linalg.norm(np.ptp(points, axis=0)) / 2.0) + _ROOM
     half = np.radians(FIELD_OF_VIEW / 2.0) * min(1.0, aspect)
     return _most_seen(exhibit, points, target, 0.9 * radius / float(np.sin(half)))
+
+
+def sun_of(exhibit: Exhibit, camera: Camera) -> Camera:
+    """Where the light comes from: high beside the camera, where it reaches most."""
+    points, blockers = _points_of_interest(exhibit), _blockers(exhibit)
+    suns = [
+        replace(camera, azimuth=camera.azimuth + turn, elevation=55.0, distance=6.0)
+        for turn in _SUNS
+    ]
+    return max(suns, key=lambda sun: _seen(sun.eye, points, blockers))
 
 
 def _close_up(exhibit: Exhibit, goal: bool) -> Camera:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes.util
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from types import ModuleType, TracebackType
 from typing import Any
 
@@ -32,18 +31,22 @@ class Studio:
     """Parts lit and ready to be drawn again and again as their carriers move."""
 
     def __init__(
-        self, parts: Sequence[Part], size: tuple[int, int], camera: Camera
+        self,
+        parts: Sequence[Part],
+        size: tuple[int, int],
+        camera: Camera,
+        sun: Camera,
     ) -> None:
         """Prepare for pictures of a size: width and height in pixels.
 
-        The light falls in from beside the camera.
+        The light shines from where `sun` is, as `camera` looks.
 
         Raises:
             InputError: MuJoCo is not installed, or there is no OpenGL.
         """
         self._mujoco = mujoco = _mujoco()
         width, height = size
-        spec, self._bodies = _model(mujoco, parts, size, camera)
+        spec, self._bodies = _model(mujoco, parts, size, sun)
         self._view = _view(mujoco, camera)
         self._model = spec.compile()
         self._data = mujoco.MjData(self._model)
@@ -113,12 +116,12 @@ def _view(mujoco: ModuleType, camera: Camera) -> Any:
 
 
 def _model(
-    mujoco: ModuleType, parts: Sequence[Part], size: tuple[int, int], camera: Camera
+    mujoco: ModuleType, parts: Sequence[Part], size: tuple[int, int], sun: Camera
 ) -> tuple[Any, dict[str, int]]:
     """MuJoCo's model of the parts, and which mocap body stands for which carrier."""
     spec = mujoco.MjSpec()
     _set_the_stage(mujoco, spec, size)
-    _add_light(mujoco, spec, camera)
+    _add_light(mujoco, spec, sun)
     bodies: dict[str, Any] = {WORLD: spec.worldbody}
     for number, part in enumerate(parts):
         if len(part.surface.triangles) == 0:
@@ -154,9 +157,8 @@ def _set_the_stage(mujoco: ModuleType, spec: Any, size: tuple[int, int]) -> None
     )
 
 
-def _add_light(mujoco: ModuleType, spec: Any, camera: Camera) -> None:
-    """A light like that of the sun, from high beside the camera."""
-    sun = replace(camera, azimuth=camera.azimuth + 50.0, elevation=55.0, distance=6.0)
+def _add_light(mujoco: ModuleType, spec: Any, sun: Camera) -> None:
+    """A light whose rays are parallel."""
     spec.worldbody.add_light(
         pos=sun.eye,
         dir=sun.target - sun.eye,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import re
 import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -15,7 +16,7 @@ from mmplan.atomic_file import write_whole
 from mmplan.kinematics import joint_placements
 from mmplan.robot import Robot
 from mmplan.shapes import Array, Cylinder
-from mmplan.visualization.camera import FIELD_OF_VIEW, best_camera
+from mmplan.visualization.camera import FIELD_OF_VIEW, best_camera, sun_of
 from mmplan.visualization.clearance import ClearanceCurve
 from mmplan.visualization.exhibit import Exhibit
 from mmplan.visualization.part import ROBOT, SCENE, WORLD, Part, object_carrier
@@ -58,10 +59,8 @@ def page_text(
     pieces["content"] = json.dumps(content, allow_nan=False).replace("<", "\\u003c")
     pieces["numbers"] = numbers.text()
     page = (_WEB / "page.html").read_text(encoding="utf-8")
-    for name, text in pieces.items():
-        before, _, after = page.partition("{{" + name + "}}")
-        page = before + text + after
-    return page
+    # All at once, as what is put in may look like a place to put something in.
+    return re.sub(r"\{\{([\w.]+)\}\}", lambda place: pieces[place[1]], page)
 
 
 class _Numbers:
@@ -115,6 +114,7 @@ def _content(exhibit: Exhibit, numbers: _Numbers) -> dict[str, Any]:
             "elevation": camera.elevation,
             "distance": camera.distance,
             "fov": FIELD_OF_VIEW,
+            "sun": float(np.radians(sun_of(exhibit, camera).azimuth)),
         },
     }
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from mmplan.atomic_file import write_whole
 from mmplan.exceptions import InputError
-from mmplan.visualization.camera import camera_of
+from mmplan.visualization.camera import camera_of, sun_of
 from mmplan.visualization.exhibit import Exhibit
 from mmplan.visualization.film import Film, film_at, film_of_plan
 from mmplan.visualization.offscreen import Image, Studio
@@ -93,7 +93,7 @@ def _pictures(
     parts = [part for part in exhibit.parts if part.layer not in look.hidden]
     width, height = look.size
     camera = camera_of(exhibit, look.camera, width / height)
-    with Studio(parts, look.size, camera) as studio:
+    with Studio(parts, look.size, camera, sun_of(exhibit, camera)) as studio:
         for moment in range(len(film.times)):
             yield studio.picture({n: T[moment] for n, T in film.poses.items()})
             if progress is not None:

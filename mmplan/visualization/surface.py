@@ -128,12 +128,14 @@ def turned(profile: Array, slices: int = _SLICES) -> Surface:
 
 def tube(points: Array, radius: float) -> Surface:
     """A pipe of eight sides along straight lines through points (n, 3)."""
+    outline = np.array([[0.0, 0.0], [radius, 0.0], [radius, 1.0], [0.0, 1.0]])
+    pipe = turned(outline, 8)
     pieces = []
     for start, end in pairwise(points):
         length = float(np.linalg.norm(end - start))
         if length > 0.0:
-            pipe = turned(_pipe(radius, length), 8)
-            pieces.append(pipe.moved(_along(start, (end - start) / length)))
+            T = _along(start, (end - start) / length)
+            pieces.append(pipe.moved(T @ np.diag([1.0, 1.0, length, 1.0])))
     return joined(pieces)
 
 
@@ -141,10 +143,6 @@ def ring(inner: float, outer: float) -> Surface:
     """A flat ring about z, seen from both sides."""
     rim = np.array([[inner, -5e-4], [outer, -5e-4], [outer, 5e-4], [inner, 5e-4]])
     return turned(rim, 2 * _SLICES)
-
-
-def _pipe(radius: float, length: float) -> Array:
-    return np.array([[0.0, 0.0], [radius, 0.0], [radius, length], [0.0, length]])
 
 
 def _along(start: Array, z: Array) -> Array:

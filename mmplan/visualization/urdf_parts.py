@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
 
 from mmplan.collision.surfaces import TriangleMesh, appearance
+from mmplan.shapes import Shape
 from mmplan.visualization.part import Colour, Part
 from mmplan.visualization.smoothing import coarsened, with_edges
 from mmplan.visualization.surface import Surface, surface_of
@@ -47,8 +49,14 @@ def body_surface(body: pin.GeometryObject) -> Surface:
     """The surface of a body in its own frame, fit to be drawn."""
     found = appearance(body.geometry)
     if not isinstance(found, TriangleMesh):
-        return with_edges(surface_of(found))
+        return _primitive(found)
     return with_edges(coarsened(Surface(*found), _MOST_TRIANGLES))
+
+
+@lru_cache(maxsize=256)
+def _primitive(shape: Shape) -> Surface:
+    """The surface of a shape of which a fixture may have many, as a rack has tines."""
+    return with_edges(surface_of(shape))
 
 
 def _colour(body: pin.GeometryObject) -> Colour:

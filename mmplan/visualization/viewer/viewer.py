@@ -13,10 +13,7 @@ import viser
 
 from mmplan.exceptions import MmplanError
 from mmplan.visualization.camera import FIELD_OF_VIEW, best_camera
-from mmplan.visualization.clearance import clearance_curve
 from mmplan.visualization.exhibit import Exhibit
-from mmplan.visualization.search import searches
-from mmplan.visualization.viewer.candidates import CandidatePanel, PopulationPanel
 from mmplan.visualization.viewer.player import Player
 from mmplan.visualization.viewer.stage import Stage
 
@@ -81,6 +78,8 @@ class Viewer:
         """Camera, light and panel."""
         server, camera = self._server, best_camera(self._exhibit)
         server.scene.set_up_direction("+z")
+        # Shadows cost more than all else where the browser has no GPU.
+        server.scene.configure_default_lights(cast_shadow=False)
         server.initial_camera.position = camera.eye
         server.initial_camera.look_at = camera.target
         server.initial_camera.fov = float(np.radians(FIELD_OF_VIEW))
@@ -94,6 +93,12 @@ class Viewer:
         with self._server.gui.add_folder("Shown", expand_by_default=False):
             for layer in self._stage.layers:
                 self._add_layer(layer)
+            shadows = self._server.gui.add_checkbox("shadows", False)
+        shadows.on_update(
+            lambda _: self._server.scene.configure_default_lights(
+                cast_shadow=shadows.value
+            )
+        )
 
     def _add_layer(self, layer: str) -> None:
         box = self._server.gui.add_checkbox(layer, True)
@@ -101,6 +106,11 @@ class Viewer:
 
     def _compute(self) -> None:
         """Add what takes time, unless the viewer is closed first."""
+        # These import the planner and the optimizers, which take time as well.
+        from mmplan.visualization.clearance import clearance_curve
+        from mmplan.visualization.search import searches
+        from mmplan.visualization.viewer import candidates
+
         exhibit = self._exhibit
         if exhibit.plan is None or self._player is None:
             return
@@ -110,8 +120,8 @@ class Viewer:
             curve = clearance_curve(problem, plan, exhibit.film, self._stop_if_closed)
             self._player.add_clearance(curve)
             found = list(searches(problem, plan, lambda _: self._stop_if_closed()))
-            CandidatePanel(self._server, exhibit, found)
-            PopulationPanel(self._server, found)
+            candidates.CandidatePanel(self._server, exhibit, found)
+            candidates.PopulationPanel(self._server, found)
             waiting.remove()
         except _ClosedError:
             return

@@ -115,8 +115,7 @@ class Drawing {
   draw(items, camera) {
     const opaque = items.filter((item) => item.colour[3] >= FADED);
     const faded = items.filter((item) => item.colour[3] < FADED);
-    const sun = unit([
-      Math.cos(camera.azimuth + 0.9), Math.sin(camera.azimuth + 0.9), 1.5]);
+    const sun = unit([Math.cos(camera.sun), Math.sin(camera.sun), 1.5]);
     const light = this.lightMatrix(camera.target, sun, camera.room);
     this.drawShadows(opaque.filter((item) => item.casts), light);
     this.drawLighted(opaque, faded, camera, sun, light);
