@@ -12,6 +12,7 @@ from importlib.metadata import version
 from mmplan.commands import (
     benchmark,
     check,
+    explain,
     generate,
     robot,
     shipped,
@@ -65,7 +66,17 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=version("mmplan"))
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for command in (solve, verify, view, check, benchmark, generate, robot, shipped):
+    for command in (
+        solve,
+        verify,
+        view,
+        check,
+        explain,
+        benchmark,
+        generate,
+        robot,
+        shipped,
+    ):
         command.add(commands)
     return parser
 

@@ -7,20 +7,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
+from mmplan.blockers import collisions
 from mmplan.motion import Blocked
 from mmplan.optimizers import Optimization
 from mmplan.scoring import End, Outcome, ScoreFunction
 
 # How many colliding evaluations of each end are looked at again for names.
 _SAMPLE = 300
-_NAMED_PAIRS = 5
-_IN_COLLISION = (
-    Outcome.BASE_COLLISION,
-    Outcome.COLLISION,
-    Outcome.HAND_OPEN_COLLISION,
-)
 
 
 @dataclass(frozen=True)
@@ -147,23 +140,4 @@ def _reason(found: Optimization, attempts: tuple[Attempt, ...]) -> str:
 
 def _end_report(end: End, score: ScoreFunction, found: Optimization) -> EndReport:
     counts = {o.label: int(found.outcomes[end, o]) for o in Outcome}
-    return EndReport(counts, _frequent_collisions(end, score, found))
-
-
-def _frequent_collisions(
-    end: End, score: ScoreFunction, found: Optimization
-) -> tuple[tuple[str, str, float], ...]:
-    """The pairs of names that overlap in most of the colliding evaluations."""
-    evaluated = found.evaluated
-    at_end = np.flatnonzero(evaluated.end == end)
-    outcome = score(end, evaluated.q_base[at_end], evaluated.grasps[at_end]).outcome
-    colliding = at_end[np.isin(outcome, _IN_COLLISION)]
-    if len(colliding) == 0:
-        return ()
-    sample = colliding[:: max(1, len(colliding) // _SAMPLE)][:_SAMPLE]
-    counts: Counter[tuple[str, str]] = Counter()
-    for row in sample:
-        pairs = score.contacts(end, evaluated.q_base[row], evaluated.grasps[row])
-        counts.update({(c.first, c.second) for c in pairs})
-    most = counts.most_common(_NAMED_PAIRS)
-    return tuple((a, b, n / len(sample)) for (a, b), n in most)
+    return EndReport(counts, collisions(score, end, found.evaluated, _SAMPLE).pairs())
