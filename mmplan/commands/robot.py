@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -166,13 +167,23 @@ def _import(options: argparse.Namespace) -> int:
         pedestal=options.pedestal and tuple(options.pedestal),
         tight=options.tight / 1000.0,
     )
-    imported = import_robot(options.urdf, wishes, options.output)
+    quiet = options.quiet or not sys.stderr.isatty()
+    progress = _silent if quiet else _say
+    imported = import_robot(options.urdf, wishes, options.output, progress)
     if options.json:
         print_json({"robot": str(imported.path), "notes": imported.notes})
     elif not options.quiet:
         show(f"written to {imported.path}; to be checked:")
         show(*(f"- {note}" for note in imported.notes))
     return SOLVED
+
+
+def _say(stage: str) -> None:
+    print(f"{stage} ...", file=sys.stderr)
+
+
+def _silent(stage: str) -> None:
+    """Say nothing."""
 
 
 def _urdf(options: argparse.Namespace) -> int:

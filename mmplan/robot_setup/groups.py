@@ -21,7 +21,6 @@ class Groups:
 
     arm: tuple[str, ...]
     hand: tuple[str, ...]  # without those that mimic others
-    flange: str  # the link that the last joint of the arm moves
     trunk: frozenset[str]  # links that are fixed to the root
     notes: tuple[str, ...]
 
@@ -51,12 +50,11 @@ def guess_groups(
     if not chosen:
         raise InputError(f"--tip: no joint that moves is above link '{tip}'")
     held = tuple(n for n in moving if n not in chosen)
-    flange = _child(root, chosen[-1])
-    below = {j.get("name", "") for j in _below(root, flange)}
+    below = {j.get("name", "") for j in _below(root, _child(root, chosen[-1]))}
     free = [n for n, joint in facts.joints.items() if n in below and _moves(joint)]
     fingers = tuple(hand) or tuple(n for n in free if n not in chosen)
     notes = tuple(_notes(chosen, held, fingers))
-    return Groups(chosen, fingers, flange, _trunk(root), notes)
+    return Groups(chosen, fingers, _trunk(root), notes)
 
 
 def _notes(arm: Sequence[str], held: Sequence[str], hand: Sequence[str]) -> list[str]:
