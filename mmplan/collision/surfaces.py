@@ -58,8 +58,9 @@ def mesh_appearance(path: Path, scale: tuple[float, float, float]) -> TriangleMe
 
 
 def _mesh(model: coal.BVHModelBase) -> TriangleMesh:
-    indices = [model.tri_indices(i) for i in range(model.num_tris)]
-    corners = [(t[0], t[1], t[2]) for t in indices]
+    corners = [
+        (t[0], t[1], t[2]) for t in map(model.tri_indices, range(model.num_tris))
+    ]
     triangles = np.array(corners, dtype=np.int64).reshape(-1, 3)
     return TriangleMesh(np.array(model.vertices()).reshape(-1, 3), triangles)
 
