@@ -14,7 +14,7 @@ from mmplan.planning.curve import Curve
 from mmplan.planning.joints import MotionLimits
 from mmplan.planning.rolling import RollingPiece, Steering, joints_of
 from mmplan.planning.timing import TimingResult, TimingSettings, time_curves
-from mmplan.planning.world import PlanningWorld, contact_names
+from mmplan.planning.world import PlanningWorld
 from mmplan.shapes import Array, read_only
 
 
@@ -145,10 +145,4 @@ def time_drive(
     The motion, between its samples too, is checked at `resolution` (m).
     """
     checker = PathChecker(world, resolution)
-    curves = drive.curves(checker.sweep.weights)
-    motion, hit = time_curves(curves, limits, checker, settings)
-    if hit is not None:
-        message = f"the timed drive collides: {contact_names(world, hit)}"
-        return TimingResult(None, message, states=checker.states)
-    message = f"{motion.duration:.2f} s in {len(curves)} pieces"
-    return TimingResult(motion, message, len(curves) - 1, checker.states)
+    return time_curves(drive.curves(checker.sweep.weights), limits, checker, settings)

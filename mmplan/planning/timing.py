@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -102,16 +103,12 @@ def time_path(
     if len(path) < 2:
         raise ValueError("a path that does not move has no timing")
     sizes = blend_sizes(path, checker, settings.blend)
-    message = ""
     for attempt in _smaller_and_smaller(sizes):
         curves = smooth_curves(path, attempt, checker.sweep.weights)
-        motion, hit = time_curves(curves, limits, checker, settings)
-        if hit is None:
-            stops = len(curves) - 1
-            message = f"{motion.duration:.2f} s with {stops} stops"
-            return TimingResult(motion, message, stops, checker.states)
-        message = f"the timed motion collides: {contact_names(world, hit)}"
-    return TimingResult(None, message, states=checker.states)
+        result = time_curves(curves, limits, checker, settings)
+        if result.motion is not None:
+            break
+    return result
 
 
 def time_curves(
@@ -119,10 +116,19 @@ def time_curves(
     limits: MotionLimits,
     checker: PathChecker,
     settings: TimingSettings,
-) -> tuple[TimedPath, Array | None]:
-    """The motion along curves, at rest between two, and where it collides (nq,)."""
-    motion = joined([_timed(c, limits, checker, settings) for c in curves])
-    return motion, _first_collision(motion, checker)
+) -> TimingResult:
+    """Move along curves as fast as the limits allow, from rest to rest on each."""
+    try:
+        motion = joined([_timed(c, limits, checker, settings) for c in curves])
+    except ArithmeticError as error:
+        return TimingResult(None, str(error), states=checker.states)
+    hit = _first_collision(motion, checker)
+    if hit is not None:
+        message = f"the timed motion collides: {contact_names(checker.world, hit)}"
+        return TimingResult(None, message, states=checker.states)
+    stops = len(curves) - 1
+    message = f"{motion.duration:.2f} s with {stops} stops"
+    return TimingResult(motion, message, stops, checker.states)
 
 
 def _smaller_and_smaller(sizes: Array) -> Iterator[Array]:
@@ -148,18 +154,31 @@ def _timed(
 ) -> TimedPath:
     """The motion along one curve, sampled so densely that it follows the curve."""
     rough = SpeedProfile.fastest(curve, even_in_length(curve), limits)
-    rate = settings.rate
-    for _ in range(DOUBLINGS + 1):
-        grid = even_in_time(curve, rough, rate)
-        profile = SpeedProfile.fastest(curve, grid, limits)
-        velocities = curve(grid, 1) * profile.speeds[:, None]
-        motion = TimedPath(profile.times, curve(grid), velocities)
-        amid = (motion.times[:-1] + motion.times[1:]) / 2.0
-        off = motion.curve.positions(amid) - curve(profile.at(amid))
-        if checker.sweep.distance(off).max() <= settings.deviation:
-            break
-        rate *= 2.0
-    return _within(motion, limits)
+    profile = rough
+    for doublings in range(DOUBLINGS + 1):
+        grid = even_in_time(curve, rough, settings.rate * 2.0**doublings)
+        with suppress(ArithmeticError):  # toppra sometimes fails on one grid alone
+            profile = SpeedProfile.fastest(curve, grid, limits)
+            if _deviation(_sampled(curve, profile), curve, profile, checker) <= (
+                settings.deviation
+            ):
+                break
+    return _within(_sampled(curve, profile), limits)
+
+
+def _sampled(curve: Curve, profile: SpeedProfile) -> TimedPath:
+    """The motion with a sample at every point of the profile's grid."""
+    velocities = curve(profile.grid, 1) * profile.speeds[:, None]
+    return TimedPath(profile.times, curve(profile.grid), velocities)
+
+
+def _deviation(
+    motion: TimedPath, curve: Curve, profile: SpeedProfile, checker: PathChecker
+) -> float:
+    """How far (m) the motion leaves the curve midway between its samples."""
+    amid = (motion.times[:-1] + motion.times[1:]) / 2.0
+    off = motion.curve.positions(amid) - curve(profile.at(amid))
+    return float(checker.sweep.distance(off).max())
 
 
 def _within(motion: TimedPath, limits: MotionLimits) -> TimedPath:

@@ -16,6 +16,7 @@ from mmplan.planning import (
 )
 from mmplan.planning.blending import blend_sizes, smooth_curves
 from mmplan.planning.sweep import sweep_of
+from mmplan.planning.toppra_speeds import fastest_speeds
 
 RESOLUTION = 0.02
 CORNER = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.5], [1.0, 1.0, 1.5]])
@@ -191,3 +192,37 @@ def test_the_motion_of_a_planned_path_is_free(kitchen, kitchen_world):
     q = motion.curve.positions(np.linspace(0.0, motion.duration, 500))
     depths = [c.depth for row in q for c in kitchen_world.contacts(row)]
     assert max(depths, default=0.0) < kitchen.planner.resolution / 2
+
+
+@pytest.mark.parametrize("failures", [{1}, {1, 2, 3, 4}])
+def test_a_grid_on_which_toppra_fails_is_not_the_end(
+    stick_among, stick_limits, monkeypatch, failures
+):
+    """The first call is for the rough profile, later ones for finer grids."""
+    calls = []
+
+    def sometimes(curve, grid, limits):
+        calls.append(len(grid))
+        if len(calls) - 1 in failures:
+            raise ArithmeticError("toppra found no time parametrization of a path")
+        return fastest_speeds(curve, grid, limits)
+
+    monkeypatch.setattr("mmplan.planning.speed_profile.fastest_speeds", sometimes)
+    path = np.array([[0.0, 0.0, 0.0], [1.0, 0.5, 1.0]])
+    motion = time_path(stick_among(), path, stick_limits, RESOLUTION).motion
+    assert len(calls) == len(failures) + 1 + (len(failures) == 1)
+    assert np.array_equal(motion.positions[[0, -1]], path)
+    assert np.all(motion.fastest() <= stick_limits.velocity * (1 + 1e-9))
+
+
+def test_a_path_that_toppra_cannot_time_is_a_result(
+    stick_among, stick_limits, monkeypatch
+):
+    def never(*_):
+        raise ArithmeticError("toppra found no time parametrization of a path")
+
+    monkeypatch.setattr("mmplan.planning.speed_profile.fastest_speeds", never)
+    path = np.array([[0.0, 0.0, 0.0], [1.0, 0.5, 1.0]])
+    result = time_path(stick_among(), path, stick_limits, RESOLUTION)
+    assert result.motion is None
+    assert "toppra found no time parametrization" in result.message
