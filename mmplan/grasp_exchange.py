@@ -66,14 +66,14 @@ def hand_frame(path: Path, robot: Robot, name: str) -> Array:
     """
     link = name.rpartition("/")[2]
     model = robot.model
-    if not link or not model.existFrame(link):
+    if not link or not model.existBodyName(link):
         what = f"its hand frame '{name}' is no link" if name else "no hand frame named"
         raise InputError(
             f"{path}: {what} of {robot.name}; give the pose of the robot's tool frame "
             "in the hand frame of the file: {family: file, file: ..., tool: {xyz: ..., "
             "rpy: ...}}"
         )
-    frame = model.frames[model.getFrameId(link)]
+    frame = model.frames[model.getBodyId(link)]
     if frame.parentJoint != robot.tool_joint:
         raise InputError(
             f"{path}: its hand frame '{name}' moves against the tool frame of "
