@@ -71,6 +71,7 @@ def row(name: str, case: Case, folder: Path) -> str:
         robot = load_robot(imported.path)
     except MmplanError as error:
         text = str(error).splitlines()[0].replace(f"{urdf.parent}/", "")
+        text = text.partition("; did you mean")[0]
         count = len(error.diagnostics) if isinstance(error, InputError) else 1
         more = f" (the first of {count} faults)" if count > 1 else ""
         return f"{asked} - | - | - | - | refused: {text}{more} |"
