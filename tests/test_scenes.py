@@ -8,13 +8,15 @@ import numpy as np
 import pytest
 
 from benchmarks.grasp_coupling import measure
-from mmplan.assets import scene_names, scenes_folder
+from mmplan import pipeline
+from mmplan.assets import robot_names, scene_names, scenes_folder
 from mmplan.collision import CollisionWorld, clearances
 from mmplan.optimizers import search_space
 from mmplan.problem import Problem
 from mmplan.scene_file import load_problem
 from mmplan.scoring import End, Outcome, ScoreFunction
 from mmplan.shapes import Array
+from mmplan.verification import examine
 
 # How exactly an object stands on its support, m.
 EXACT = 2e-4
@@ -27,11 +29,7 @@ def loaded(name: str) -> Problem:
 
 @cache
 def score_function(name: str) -> ScoreFunction:
-    problem = loaded(name)
-    task = problem.tasks[0]
-    (family,) = problem.object(task.object).grasps.values()
-    world = CollisionWorld.of_problem(problem)
-    return ScoreFunction(problem, task, world, family)
+    return pipeline.score_function(loaded(name))
 
 
 def feasible(name: str, end: End, genes: Array, bases: int) -> Array:
@@ -64,6 +62,18 @@ def test_the_start_is_free_of_collision(name: str) -> None:
     problem = loaded(name)
     world = CollisionWorld.of_problem(problem)
     assert world.contacts(problem.q_start) == ()
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_every_scene_solves(name: str) -> None:
+    problem = loaded(name)
+    plan = pipeline.solve(problem, seed=0)
+    assert examine(plan, problem).ok
+
+
+def test_every_robot_has_a_scene() -> None:
+    robots = {loaded(name).robot.name for name in scene_names()}
+    assert robots == set(robot_names())
 
 
 def test_fixtures_have_capsule_tines() -> None:
