@@ -11,6 +11,8 @@ from mmplan.shapes import Array, Mesh
 
 # A mesh whose hull is at most this much larger than itself is taken as convex.
 _CONVEX_VOLUME_RATIO = 1.01
+# More triangles take minutes and gain nothing on the convex pieces.
+_MOST_TRIANGLES = 500_000
 _EFFORT = Effort(concavity=0.02, iterations=150)
 
 
@@ -39,8 +41,30 @@ def hull(points: Array) -> coal.ConvexBase:
     return coal.Convex.convexHull(corners, True, "Qt")
 
 
+def check_size(mesh: Mesh, largest: float) -> None:
+    """Refuse a mesh that is larger (m) than such a thing can be.
+
+    Raises:
+        InputError: It is, or the file cannot be read.
+    """
+    vertices = np.array(read_mesh(mesh).vertices())
+    size = np.ptp(vertices, axis=0) if np.isfinite(vertices).all() else np.zeros(3)
+    if size.max() > largest:
+        extents = " x ".join(f"{extent:.3g}" for extent in size)
+        raise InputError(
+            f"{mesh.path}: this mesh is {extents} m large, and what is carried is at "
+            f"most {largest:g} m; if it is in millimetres, give it 'scale: 0.001'"
+        )
+
+
 def _load(mesh: Mesh) -> tuple[Array, Triangles]:
-    vertices, triangles = read_triangles(read_mesh(mesh))
+    surface = read_mesh(mesh)
+    if surface.num_tris > _MOST_TRIANGLES:
+        raise InputError(
+            f"{mesh.path}: this mesh has {surface.num_tris:,} triangles, and at most "
+            f"{_MOST_TRIANGLES:,} are taken; simplify it first"
+        )
+    vertices, triangles = read_triangles(surface)
     if fault := _fault(vertices, triangles):
         raise InputError(f"{mesh.path}: this mesh {fault}")
     return vertices, triangles
@@ -72,6 +96,8 @@ def _reason(error: Exception) -> str:
     """Why a file cannot be read, without where in coal's source that was found."""
     _, _, message = str(error).partition("message: ")
     name, _, cause = message.partition("\n")
+    if "No meshes remaining" in cause:
+        return "it has no triangles"
     return cause.partition("\n")[0] or name or str(error)
 
 

@@ -7,9 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mmplan.collision.meshes import check_size
 from mmplan.collision.solids import Solid, geometries, solids_of_obstacle
 from mmplan.problem import Object, Problem
-from mmplan.shapes import Array
+from mmplan.shapes import Array, Mesh
+
+# A larger mesh to be carried is in other units than metres, m.
+LARGEST_CARRIED = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +44,8 @@ class Scenery:
         Raises:
             InputError: Its mesh cannot be used.
         """
+        if isinstance(item.shape, Mesh):
+            check_size(item.shape, LARGEST_CARRIED)
         return tuple(Solid(item.name, g, np.eye(4)) for g in geometries(item.shape))
 
     def is_ground(self, owner: str) -> bool:

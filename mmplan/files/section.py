@@ -118,6 +118,8 @@ def _existing_file(value: str, info: ValidationInfo) -> str:
     folder = (info.context or {}).get("folder")
     if folder is None:
         return value
+    if "://" in value:
+        raise fault(f"'{value}' is an address; download it and name the file")
     path = Path(folder) / value
     if not is_file(path):
         raise fault(f"no such file: '{value}', sought at {path}")

@@ -9,10 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmplan.collision import decomposition, meshes
+from mmplan.collision import Scenery, decomposition, meshes
 from mmplan.collision.decomposition import Effort
 from mmplan.collision.solids import geometries
 from mmplan.exceptions import InputError
+from mmplan.problem import Object
 from mmplan.shapes import Array, Mesh
 from tests.collision.meshes import (
     TETRAHEDRON,
@@ -277,3 +278,43 @@ def test_cutting_twice_gives_the_same_pieces(u_mesh: Mesh, cache: Path) -> None:
         file.unlink()
     for a, b in zip(first, meshes.convex_pieces(u_mesh), strict=True):
         np.testing.assert_array_equal(a, b)
+
+
+def test_a_file_without_triangles(tmp_path: Path) -> None:
+    path = tmp_path / "points.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n")
+    with pytest.raises(InputError, match="cannot be read: it has no triangles"):
+        meshes.convex_pieces(Mesh(path))
+
+
+def test_triangles_without_area_do_no_harm(tmp_path: Path) -> None:
+    """One edge is cut by a point that the triangle on its other side does not have."""
+    middle = 0.5 * (TETRAHEDRON[0] + TETRAHEDRON[1])
+    vertices = np.concatenate([TETRAHEDRON, [middle]])
+    faces = [(0, 2, 4), (4, 2, 1), (0, 4, 1), *TETRAHEDRON_FACES[1:]]
+    path = write_obj(tmp_path / "sliver.obj", vertices, faces)
+    (piece,) = meshes.convex_pieces(Mesh(path))
+    assert meshes.hull(piece).computeVolume() == pytest.approx(0.001 / 6)
+
+
+def test_a_mesh_of_a_million_triangles_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(meshes, "_MOST_TRIANGLES", 1000)
+    assert_refused(
+        write_obj(tmp_path / "fine.obj", *ball(24)),
+        "has 2,208 triangles, and at most 1,000 are taken; simplify it first",
+    )
+
+
+def test_a_mesh_in_millimetres_is_told_by_its_size(tmp_path: Path) -> None:
+    vertices, faces = ball(6)
+    path = write_obj(tmp_path / "mug.obj", 500.0 * vertices, faces)
+    with pytest.raises(InputError) as caught:
+        Scenery.solids_of_object(Object("mug", Mesh(path), np.eye(4)))
+    assert str(caught.value) == (
+        f"{path}: this mesh is 100 x 100 x 100 m large, and what is carried is at "
+        "most 3 m; if it is in millimetres, give it 'scale: 0.001'"
+    )
+    small = Mesh(path, (0.001, 0.001, 0.001))
+    assert len(Scenery.solids_of_object(Object("mug", small, np.eye(4)))) == 1
