@@ -68,10 +68,12 @@ class MovingJoints:
 
 @dataclass(frozen=True, eq=False)
 class MotionLimits:
-    """How fast the joints may move, in the order of q."""
+    """How fast and how far the joints may move, in the order of q."""
 
     velocity: Array  # (nq,), m/s or rad/s
     acceleration: Array  # (nq,), m/s^2 or rad/s^2
+    lower: Array | float = -np.inf  # (nq,), m or rad
+    upper: Array | float = np.inf
 
 
 def transit_joints(problem: Problem) -> MovingJoints:
@@ -90,13 +92,17 @@ def standing_joints(problem: Problem, *, hand: bool) -> MovingJoints:
 
 
 def motion_limits(robot: Robot) -> MotionLimits:
-    """The robot's own velocity and acceleration limits."""
-    velocity = np.full(robot.model.nq, np.inf)
-    acceleration = np.full(robot.model.nq, np.inf)
+    """The robot's own limits."""
+    limits = np.full((4, robot.model.nq), np.inf)
+    limits[2] = -np.inf
     for group in (robot.base, robot.arm, robot.hand):
-        velocity[group.indices] = group.velocity
-        acceleration[group.indices] = group.acceleration
-    return MotionLimits(read_only(velocity), read_only(acceleration))
+        limits[:, group.indices] = (
+            group.velocity,
+            group.acceleration,
+            group.lower,
+            group.upper,
+        )
+    return MotionLimits(*(read_only(row) for row in limits))
 
 
 def _moving_joints(problem: Problem, *, base: bool, hand: bool) -> MovingJoints:

@@ -24,6 +24,10 @@ HALVINGS = 3
 DOUBLINGS = 3
 # Waypoints nearer to each other than this are one, m.
 SAME_PLACE = 1e-7
+# By how much a joint may pass its limit between samples and be tamed, rad or m, and how
+# often its velocities are halved for that.
+HAIR = 1e-4
+TAMINGS = 30
 # A hair of slack, so that limits hold in any order of evaluation.
 SLACK = 1.0 + 1e-9
 
@@ -163,7 +167,7 @@ def _timed(
                 settings.deviation
             ):
                 break
-    return _within(_sampled(curve, profile), limits)
+    return _within(_inside(_sampled(curve, profile), limits), limits)
 
 
 def _sampled(curve: Curve, profile: SpeedProfile) -> TimedPath:
@@ -179,6 +183,29 @@ def _deviation(
     amid = (motion.times[:-1] + motion.times[1:]) / 2.0
     off = motion.curve.positions(amid) - curve(profile.at(amid))
     return float(checker.sweep.distance(off).max())
+
+
+def _inside(motion: TimedPath, limits: MotionLimits) -> TimedPath:
+    """The motion without the hair by which it passes a limit between two samples.
+
+    Where a joint moves along its limit, its velocities at both samples are lessened.
+    """
+    tamed = motion
+    for _ in range(TAMINGS):
+        extremes = tamed.curve.position_extremes()
+        over = np.maximum(
+            extremes.greatest - limits.upper, limits.lower - extremes.least
+        )
+        if over.max() <= 0.0:
+            return tamed
+        if over.max() > HAIR:
+            break
+        velocities = tamed.velocities.copy()
+        pieces = over > 0.0
+        velocities[:-1][pieces] *= 0.5
+        velocities[1:][pieces] *= 0.5
+        tamed = TimedPath(tamed.times, tamed.positions, velocities)
+    return motion
 
 
 def _within(motion: TimedPath, limits: MotionLimits) -> TimedPath:

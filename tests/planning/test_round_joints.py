@@ -75,9 +75,7 @@ def test_the_same_seed_gives_the_same_path(stick_among, turning_joints):
 def test_planners_without_circles_are_refused(stick_among, turning_joints):
     settings = replace(SETTINGS, name="InformedRRTstar")
     rng = np.random.default_rng(0)
-    with pytest.raises(
-        InputError, match=r"cannot plan for joints .* RRTConnect"
-    ):
+    with pytest.raises(InputError, match=r"cannot plan for joints .* RRTConnect"):
         plan_path(stick_among(), LEFT, RIGHT, turning_joints, settings, rng)
 
 

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -226,3 +227,20 @@ def test_a_path_that_toppra_cannot_time_is_a_result(
     result = time_path(stick_among(), path, stick_limits, RESOLUTION)
     assert result.motion is None
     assert "toppra found no time parametrization" in result.message
+
+
+def test_a_joint_that_reaches_its_limit_on_the_way_does_not_pass_it(
+    stick_among, stick_limits
+):
+    """Corners on the limit itself, where samples alone would let it pass by a hair."""
+    upper = np.array([np.inf, 0.3, np.inf])
+    limits = replace(stick_limits, upper=upper)
+    path = np.array(
+        [[0.0, 0.29, 0.0], [0.5, 0.3, 0.5], [1.0, 0.3, 1.0], [1.5, 0.29, 1.5]]
+    )
+    free = time_path(stick_among(), path, stick_limits, RESOLUTION).motion
+    assert free.curve.position_extremes().greatest.max(axis=0)[1] > 0.3 + 1e-9
+    motion = time_path(stick_among(), path, limits, RESOLUTION).motion
+    assert motion.curve.position_extremes().greatest.max(axis=0)[1] <= 0.3
+    assert_within_limits(motion, stick_limits)
+    assert motion.duration < 1.01 * free.duration
