@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmplan.commands.arguments import add_json, natural, positive
-from mmplan.commands.results import SOLVED, print_json
+from mmplan.commands.results import SOLVED, print_json, require_folder
 from mmplan.exceptions import InputError
 
 if TYPE_CHECKING:
