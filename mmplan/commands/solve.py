@@ -51,7 +51,7 @@ def _solve(options: argparse.Namespace) -> int:
 
     for path in (options.output, options.html):
         if path is not None:
-            _require_folder(path)
+            require_folder(path)
     problem = _with_options(load_problem(options.scene), options)
 
     from mmplan.pipeline import solve
@@ -95,14 +95,6 @@ def _with_options(problem: Problem, options: argparse.Namespace) -> Problem:
     if options.evaluations is not None:
         settings = replace(settings, evaluations=options.evaluations)
     return replace(problem, optimizer=settings)
-
-
-def _require_folder(path: Path) -> None:
-    """Refuse an output that cannot be written before any work is done for it."""
-    if path.is_dir():
-        raise InputError(f"{path}: is a folder; give the name of a file")
-    if not path.absolute().parent.is_dir():
-        raise InputError(f"{path}: there is no folder {path.parent}")
 
 
 def _plan_summary(plan: Plan, output: Path | None) -> dict[str, Any]:
