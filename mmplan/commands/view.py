@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from mmplan.commands.arguments import natural, positive
 from mmplan.commands.plans import load_plan
-from mmplan.commands.results import SOLVED
+from mmplan.commands.results import SOLVED, require_folder
 from mmplan.exceptions import InputError
 
 if TYPE_CHECKING:
@@ -93,8 +93,7 @@ def _render(options: argparse.Namespace) -> int:
     kind = options.output.suffix.lower()
     if kind not in _KINDS:
         raise InputError(f"{options.output}: expected a name in {', '.join(_KINDS)}")
-    if not options.output.absolute().parent.is_dir():
-        raise InputError(f"{options.output}: there is no folder for it")
+    require_folder(options.output)
     exhibit = load_exhibit(options.subject, options.scene)
 
     from mmplan.terminal import progress_display, show
