@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -51,67 +52,91 @@ class LinkDistances:
         self._body_joint = np.array([bodies[i].joint for i in self._robot_bodies])
         self._body_placement = _placements(self._geometry, self._robot_bodies)
 
-    def __call__(self, q: Array, links: Indices, needed: Mask | None = None) -> Array:
+    def __call__(
+        self,
+        q: Array,
+        links: Indices,
+        needed: Mask | None = None,
+        most: Array | None = None,
+    ) -> Array:
         """Distances (n, len(links)) in metres at q (n, nq) of some of `self.links`.
 
         A link that overlaps an obstacle has a distance of 0 or less. Without any
         obstacle distances are infinite. Only those are computed that are `needed`
-        (n, len(links)), all by default; the others are infinite.
+        (n, len(links)), all by default; the others are infinite. Where it is known what
+        the distances are at `most` (n, len(links)) there is less to look at.
         """
-        if needed is None:
-            needed = np.ones((len(q), len(links)), dtype=np.bool_)
         distances = np.full((len(q), len(links)), np.inf)
+        needed = np.isinf(distances) if needed is None else needed
+        most = distances if most is None else most
         for start in range(0, len(q), _CHUNK):
             chunk = slice(start, start + _CHUNK)
             T, place = self._kinematics(q[chunk]), self._placing(q[chunk])
-            self._measure(T, place, links, needed[chunk], distances[chunk])
+            wanted = _Wanted(links, needed[chunk], most[chunk])
+            distances[chunk] = self._measure(T, place, wanted)
         return distances
 
     def at(self, T_world_joint: Array, links: Indices) -> Array:
         """Distances (n, len(links)), from poses (n, njoints, 4, 4) of the joints."""
-        distances = np.full((len(T_world_joint), len(links)), np.inf)
-        needed = np.ones(distances.shape, dtype=np.bool_)
+        nothing = np.full((len(T_world_joint), len(links)), np.inf)
         moving = np.unique(self._body_joint[np.isin(self._link_of_body, links)])
         place = self._placing_joints(T_world_joint, moving.tolist())
-        self._measure(T_world_joint, place, links, needed, distances)
-        return distances
+        wanted = _Wanted(links, np.isinf(nothing), nothing)
+        return self._measure(T_world_joint, place, wanted)
 
     def _measure(
-        self,
-        T: Array,
-        place: Callable[[int], None],
-        links: Indices,
-        needed: Mask,
-        distances: Array,
-    ) -> None:
-        """Fill in the distances (n, len(links)) that are needed, row by row."""
+        self, T: Array, place: Callable[[int], None], wanted: _Wanted
+    ) -> Array:
+        """The distances (n, links) that are needed, infinite elsewhere, row by row."""
+        links, needed, most = wanted
         bodies = np.flatnonzero(np.isin(self._link_of_body, links))
         column = np.searchsorted(links, self._link_of_body[bodies])
         row, which = np.nonzero(needed[:, column])
-        gaps, pairs = self._by_rising_gap(T, row, bodies[which])
-        found, placed = zip(row.tolist(), column[which].tolist(), strict=True), -1
-        for k, (i, j) in enumerate(found):
+        gaps, pairs, stops = self._suspects(
+            T, row, bodies[which], most[row, column[which]]
+        )
+        distances = np.full(needed.shape, np.inf)
+        start, placed = 0, -1
+        places = zip(row.tolist(), column[which].tolist(), stops, strict=True)
+        for i, j, stop in places:
             if i != placed:
                 place(i)
                 placed = i
-            distances[i, j] = self._nearest(gaps[k], pairs[k], distances[i, j])
+            nearest = float(distances[i, j])
+            for k in range(start, stop):
+                if gaps[k] >= nearest:
+                    break
+                nearest = min(nearest, self._distance(pairs[k]))
+            distances[i, j] = nearest
+            start = stop
+        return distances
 
-    def _by_rising_gap(
-        self, T: Array, row: Indices, bodies: Indices
-    ) -> tuple[Array, Indices]:
-        """Lower bounds (k, obstacles) of the distances from bodies, and the pairs.
+    def _suspects(
+        self, T: Array, row: Indices, bodies: Indices, most: Array
+    ) -> tuple[list[float], list[int], list[int]]:
+        """The obstacles that may be nearest to bodies (k,), no further than `most`.
 
-        Body `bodies[k]` is moved by its joint's pose in row `row[k]` of T. Bounds are
-        infinite for no pair.
+        Body `bodies[k]` is moved by its joint's pose in row `row[k]` of T. For all
+        pairs body by body, by rising lower bounds of their distances: these bounds, the
+        pairs' ids, and where the pairs of each body end.
         """
         moving = T[row, self._body_joint[bodies]] @ self._body_placement[bodies]
         local = Bounds(*(part[bodies] for part in self._body_bounds))
-        moved = Bounds(*(part[:, None] for part in moved_bounds(local, moving)))
-        pairs = self._pair[bodies]
-        gaps = np.where(pairs >= 0, moved.gap(self._obstacle_bounds), np.inf)
-        order = np.argsort(gaps, axis=1)
-        gaps, pairs = (np.take_along_axis(a, order, axis=1) for a in (gaps, pairs))
-        return gaps, pairs
+        moved = moved_bounds(local, moving)
+        gaps = Bounds(*(part[:, None] for part in moved)).gap(self._obstacle_bounds)
+        near = (gaps <= most[:, None]) & (self._pair[bodies] >= 0)
+        body, obstacle = np.nonzero(near)
+        gap = gaps[body, obstacle]
+        if len(gap) < _DENSE * near.size:
+            # In the axes of the body its own bounds fit, and more pairs are apart.
+            other = Bounds(*(part[obstacle] for part in self._obstacle_bounds))
+            turned = moved_bounds(other, np.linalg.inv(moving)[body])
+            own = Bounds(*(part[body] for part in local))
+            gap = np.maximum(gap, own.gap(turned))
+        order = np.lexsort((gap, body))
+        stops = np.cumsum(np.bincount(body, minlength=len(bodies)))
+        pairs = self._pair[bodies[body], obstacle]
+        return gap[order].tolist(), pairs[order].tolist(), stops.tolist()
 
     def _placing(self, q: Array) -> Callable[[int], None]:
         """What puts all bodies where they are at a row of q (n, nq)."""
@@ -137,22 +162,23 @@ class LinkDistances:
 
         return place
 
-    def _nearest(self, gaps: Array, pairs: Indices, nearest: float) -> float:
-        """The least of `nearest` and the exact distances of pairs, by rising bounds."""
-        for start in range(0, len(gaps), _FEW):
-            few = slice(start, start + _FEW)
-            for gap, pair in zip(gaps[few].tolist(), pairs[few].tolist(), strict=True):
-                if gap >= nearest:
-                    return nearest
-                result = pin.computeDistance(self._geometry, self._geometry_data, pair)
-                nearest = min(nearest, result.min_distance)
-        return nearest
+    def _distance(self, pair: int) -> float:
+        result = pin.computeDistance(self._geometry, self._geometry_data, pair)
+        return float(result.min_distance)
+
+
+class _Wanted(NamedTuple):
+    """Which distances of some links are needed, and what they are at most."""
+
+    links: Indices
+    needed: Mask  # (n, links)
+    most: Array  # (n, links), m
 
 
 # Configurations bounded in one go, so that the arrays stay in the cache.
 _CHUNK = 128
-# Pairs looked at in one go; seldom do more matter.
-_FEW = 8
+# The share of pairs up to which it pays to bound distances once more.
+_DENSE = 0.2
 _ROBOT = ("base", "arm", "finger")
 OBSTACLES = ("ground", "obstacle", "standing")
 

@@ -25,7 +25,7 @@ class Balls(NamedTuple):
 
 
 def inner_balls(geometry: coal.CollisionGeometry) -> Balls:
-    """A few balls that reach to all sides of a convex body."""
+    """A few balls that reach far into a convex body's ends."""
     for kind, balls in _RULES.items():
         if isinstance(geometry, kind):
             return balls(geometry)
@@ -38,53 +38,33 @@ def _of_sphere(sphere: coal.Sphere) -> Balls:
 
 
 def _of_capsule(capsule: coal.Capsule) -> Balls:
-    return _along_z(capsule.halfLength, capsule.radius)
+    return _along(2, capsule.halfLength, capsule.radius)
 
 
 def _of_cylinder(cylinder: coal.Cylinder) -> Balls:
-    """Balls along the axis, and points of both rims."""
     radius = min(cylinder.radius, cylinder.halfLength)
-    inside = _along_z(cylinder.halfLength - radius, radius)
-    angles = np.arange(_RIM) * (2 * np.pi / _RIM)
-    circle = cylinder.radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    ends = [
-        np.column_stack([circle, np.full(_RIM, z)])
-        for z in (-cylinder.halfLength, cylinder.halfLength)
-    ]
-    return _join(inside, _points(np.concatenate(ends)))
+    return _along(2, cylinder.halfLength - radius, radius)
 
 
 def _of_box(box: coal.Box) -> Balls:
-    """Balls along the longest axis, and the corners."""
     half = np.ravel(box.halfSide)
-    radius = float(half.min())
-    axis = int(np.argmax(half))
-    inside = _along_z(float(half[axis]) - radius, radius)
-    inside.centres[:, [axis, 2]] = inside.centres[:, [2, axis]]
-    signs = np.array(np.meshgrid(*[(-1.0, 1.0)] * 3)).reshape(3, -1).T
-    return _join(inside, _points(signs * half))
+    radius, axis = float(half.min()), int(np.argmax(half))
+    return _along(axis, float(half[axis]) - radius, radius)
 
 
 def _of_hull(hull: coal.ConvexBase) -> Balls:
     """Vertices that are far from each other, and their middle."""
-    vertices = np.asarray(hull.points())
-    chosen = _spread(vertices, _VERTICES)
-    return _points(np.concatenate([chosen, chosen.mean(axis=0)[None]]))
+    chosen = _spread(np.asarray(hull.points()), _VERTICES)
+    centres = np.concatenate([chosen, chosen.mean(axis=0)[None]])
+    return Balls(centres, np.zeros(len(centres)))
 
 
-def _along_z(half_length: float, radius: float) -> Balls:
-    count = _AXIS if half_length > 0.0 else 1
-    centres = np.zeros((count, 3))
-    centres[:, 2] = np.linspace(-half_length, half_length, count)
-    return Balls(centres, np.full(count, radius))
-
-
-def _points(points: Array) -> Balls:
-    return Balls(points, np.zeros(len(points)))
-
-
-def _join(first: Balls, second: Balls) -> Balls:
-    return Balls(*(np.concatenate(parts) for parts in zip(first, second, strict=True)))
+def _along(axis: int, half_length: float, radius: float) -> Balls:
+    """A ball at either end of a line, or the only one there is."""
+    ends = [-half_length, half_length] if half_length > 0.0 else [0.0]
+    centres = np.zeros((len(ends), 3))
+    centres[:, axis] = ends
+    return Balls(centres, np.full(len(ends), radius))
 
 
 def _spread(points: Array, most: int) -> Array:
@@ -99,8 +79,8 @@ def _spread(points: Array, most: int) -> Array:
     return points[chosen]
 
 
-# How many balls along an axis, points of a rim, vertices of a hull.
-_AXIS, _RIM, _VERTICES = 3, 4, 8
+# How many vertices of a hull.
+_VERTICES = 5
 
 _RULES: dict[type[coal.CollisionGeometry], Callable[..., Balls]] = {
     coal.Sphere: _of_sphere,

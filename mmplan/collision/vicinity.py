@@ -43,7 +43,7 @@ class Vicinity:
 
     def distances(self, points: Array) -> Array:
         """Upper bounds (n,) of the distances from points (n, 3), in m."""
-        if not self._objects:
+        if not self._objects or len(points) == 0:
             return np.full(len(points), np.inf)
         if self._origin is None:
             self._origin = np.mean(points, axis=0) - _SPACING * _NODES / 2

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from mmplan.collision import CollisionWorld, LinkBounds, LinkDistances
+from mmplan.kinematics import ForwardKinematics
 from mmplan.robot import Robot
 from mmplan.scoring.hand_poses import HandPoses
 from mmplan.scoring.term import Grasped, RowCache, row_keys
@@ -30,6 +31,7 @@ class ObstacleDistances:
         self._bounds = LinkBounds(world, tuple(self.links[k] for k in self._arm))
         self._joints = [_moved_by(robot, self.links[k]) for k in self._arm]
         self._known: list[dict[bytes, float]] = [{} for _ in self._arm]
+        self._kinematics = ForwardKinematics(robot.model)
         self._hand_poses = HandPoses(robot)
         self._of_bases, self._of_grasps = RowCache(), RowCache()
 
@@ -72,7 +74,8 @@ class ObstacleDistances:
             new = {k: row for row, k in enumerate(keys[link]) if k not in known}
             needed[list(new.values()), link] = True
         rows = np.flatnonzero(needed.any(axis=1))
-        found = self._exact(q[rows], self._arm, needed[rows])
+        most = self._bounds(self._kinematics(q[rows]))
+        found = self._exact(q[rows], self._arm, needed[rows], most)
         for row, link in np.argwhere(needed[rows]).tolist():
             self._known[link][keys[link][rows[row]]] = found[row, link]
         columns = zip(keys, self._known, strict=True)
