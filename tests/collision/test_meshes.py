@@ -280,6 +280,30 @@ def test_cutting_twice_gives_the_same_pieces(u_mesh: Mesh, cache: Path) -> None:
         np.testing.assert_array_equal(a, b)
 
 
+def test_parts_that_do_not_hang_together_are_taken_one_by_one(
+    tmp_path: Path, cutter: list[Mesh]
+) -> None:
+    vertices, faces = u_shape()
+    both = np.concatenate([vertices, TETRAHEDRON + 1.0])
+    more = [tuple(i + len(vertices) for i in face) for face in TETRAHEDRON_FACES]
+    path = write_obj(tmp_path / "both.obj", both, [*faces, *more])
+    pieces = meshes.convex_pieces(Mesh(path))
+    assert len(cutter) == 1
+    np.testing.assert_allclose(np.sort(pieces[-1], axis=0), np.sort(TETRAHEDRON + 1, 0))
+
+
+def test_a_cavity_stays_with_what_it_is_in(tmp_path: Path, cutter: list[Mesh]) -> None:
+    inside = 0.01 + 0.6 * TETRAHEDRON
+    faces = [tuple(i + 4 for i in face[::-1]) for face in TETRAHEDRON_FACES]
+    path = write_obj(
+        tmp_path / "hollow.obj",
+        np.concatenate([TETRAHEDRON, inside]),
+        [*TETRAHEDRON_FACES, *faces],
+    )
+    meshes.convex_pieces(Mesh(path))
+    assert len(cutter) == 1
+
+
 def test_a_file_without_triangles(tmp_path: Path) -> None:
     path = tmp_path / "points.obj"
     path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n")
