@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mmplan.optimizers import Triple
-from mmplan.scoring import TERMS, End, ScoreFunction
+from mmplan.scoring import End, ScoreFunction
 from mmplan.shapes import Array, read_only
 
 
@@ -28,7 +28,7 @@ class Candidate:
         grasp = triple.grasp[None]
         ends = [score(end, triple.q_base[end][None], grasp) for end in End]
         hold = score.holds(grasp)
-        terms = [dict(zip(TERMS, e.terms[0].tolist(), strict=True)) for e in ends]
+        terms = [dict(zip(score.terms, e.terms[0].tolist(), strict=True)) for e in ends]
         return cls(
             triple=triple,
             q=(read_only(ends[0].q[0]), read_only(ends[1].q[0])),

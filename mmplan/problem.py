@@ -68,6 +68,8 @@ class ScoreSettings:
     `quality` names the measure G, and a score is 0 where it is below `min_quality`.
     The paper's grasps all close by force, so that it leaves grasp quality out; so do
     the default weights, and the default measure is what the grasp family vouches for.
+    `joint_margin` rewards joints of the arm that stay away from their limits, which the
+    paper does not; without a weight it is no term at all.
     """
 
     grasp: float = 0.0
@@ -75,6 +77,7 @@ class ScoreSettings:
     clutter: float = 1.0
     min_quality: float = 0.0
     quality: str = "family"
+    joint_margin: float = 0.0
 
 
 @dataclass(frozen=True)

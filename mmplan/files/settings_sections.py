@@ -54,10 +54,16 @@ class ScoreSection(Section):
     quality: QualityName = "family"
     """Measure of grasp quality: family, or of the wrenches: epsilon or volume."""
 
+    joint_margin: Weight = ScoreSettings.joint_margin
+    """Weight of the distance between the arm's joints and their limits."""
+
     @model_validator(mode="after")
     def _some_weight(self) -> Self:
-        if self.grasp + self.manipulability + self.clutter == 0.0:
-            raise fault("one of grasp, manipulability and clutter must be above 0")
+        weights = (self.grasp, self.manipulability, self.clutter, self.joint_margin)
+        if sum(weights) == 0.0:
+            raise fault(
+                "one of grasp, manipulability, clutter, joint_margin must be above 0"
+            )
         return self
 
     def settings(self) -> ScoreSettings:

@@ -12,6 +12,7 @@ from mmplan.kinematics import ForwardKinematics
 from mmplan.robot import Robot
 from mmplan.scoring.clutter import Clutter
 from mmplan.scoring.feasibility import Feasibility
+from mmplan.scoring.joint_margin import joint_margin
 from mmplan.scoring.manipulability import Manipulability
 from mmplan.scoring.outcome import End, Outcome
 from mmplan.scoring.selection import best_of_rows
@@ -48,13 +49,14 @@ class Best(NamedTuple):
 
     row: Indices  # (k,), the pair
     q: Array  # (k, nq)
-    terms: Array  # (k, 3), weighted
+    terms: Array  # (k, terms), weighted
 
 
 class BranchSearch:
     """Rates branches: bounds of all at once, and in full only what can be the best.
 
-    Grasp quality and manipulability are exact at once, clutter is bounded above.
+    Grasp quality, manipulability and, where it counts, the joints' margin are exact at
+    once, clutter is bounded above.
     """
 
     def __init__(
@@ -64,7 +66,11 @@ class BranchSearch:
         clutter: Clutter,
         factors: Array,
     ) -> None:
-        """Prepare for the `factors` (3,) of grasp quality, manipulability, clutter."""
+        """Prepare for the `factors` of grasp quality, manipulability and clutter.
+
+        A fourth one, if there is one, is that of the joints' margin.
+        """
+        self._robot = robot
         self._kinematics = ForwardKinematics(robot.model)
         self._manipulability = Manipulability(robot)
         self._feasibility = feasibility
@@ -103,11 +109,12 @@ class BranchSearch:
         return Best(branches.row[place], branches.grasped.q[place], terms[place])
 
     def _bounds(self, branches: Branches, fits: Mask) -> tuple[Array, Array]:
-        """Terms (m, 3), clutter left out, and upper bounds of totals, (m,).
+        """Terms (m, terms), clutter left out, and upper bounds of totals, (m,).
 
         Both are 0 for those whose hand does not fit.
         """
-        terms, clutter = np.zeros((len(fits), 3)), np.zeros(len(fits))
+        terms = np.zeros((len(fits), len(self._factors)))
+        clutter = np.zeros(len(fits))
         places = np.flatnonzero(fits)
         for start in range(0, len(places), _CHUNK):
             chunk = places[start : start + _CHUNK]
@@ -116,5 +123,7 @@ class BranchSearch:
             terms[chunk, 0] = branches.quality[chunk]
             terms[chunk, 1] = self._manipulability.at(T)
             clutter[chunk] = self._clutter.bound(grasped, T)
+            if len(self._factors) > 3:
+                terms[chunk, 3] = joint_margin(self._robot, grasped.q)
         terms *= self._factors
         return terms, terms.sum(axis=1) + self._factors[2] * clutter

@@ -28,7 +28,7 @@ class Breakdown:
 
     outcome: Outcome
     total: float
-    terms: dict[str, float]  # in the order of `TERMS`
+    terms: dict[str, float]  # in the order of `term_names`
     links: tuple[LinkClutter, ...] = ()
 
 

@@ -24,30 +24,38 @@ Indices = npt.NDArray[np.int64]
 # What a term counts that is at the robot's scale.
 POINTS = 50.0
 TERMS = ("grasp", "manipulability", "clutter")
+# A term more, where a scene gives it a weight.
+JOINT_MARGIN = "joint_margin"
 
 
 class Scores(NamedTuple):
     """What n pairs of base and grasp are worth at one end.
 
     `q` is the best configuration, hand closed, NaN where there is none; `terms` holds
-    the weighted terms in the order of `TERMS`, which add up to `total`.
+    the weighted terms in the order of `term_names`, which add up to `total`.
     """
 
     total: Array  # (n,)
-    terms: Array  # (n, 3)
+    terms: Array  # (n, terms)
     q: Array  # (n, nq)
     outcome: npt.NDArray[np.int8]  # (n,) of Outcome
 
 
 def term_factors(problem: Problem) -> Array:
-    """What the raw values are multiplied by, (3,), in the order of `TERMS`."""
+    """What the raw values are multiplied by, in the order of `term_names`."""
     settings, scales = problem.score, problem.robot.score_scales
     factors = [
         settings.grasp,
         settings.manipulability / scales.manipulability,
         settings.clutter / scales.clutter,
+        settings.joint_margin,
     ]
-    return POINTS * np.array(factors)
+    return POINTS * np.array(factors[: len(term_names(problem))])
+
+
+def term_names(problem: Problem) -> tuple[str, ...]:
+    """The terms that a problem's score is made of."""
+    return (*TERMS, JOINT_MARGIN) if problem.score.joint_margin > 0.0 else TERMS
 
 
 class Holds(NamedTuple):
@@ -89,6 +97,7 @@ class ScoreFunction:
         self.clutter = Clutter(
             robot, {e: w.without(task.object) for e, w in self.worlds.items()}
         )
+        self.terms = term_names(problem)
         self.factors = term_factors(problem)
         self._search = BranchSearch(
             robot, self._feasibility, self.clutter, self.factors
@@ -104,8 +113,8 @@ class ScoreFunction:
         rows = self._scores[end].rows(
             list(keys), lambda new: self._evaluate(end, q_base[new], grasps[new])
         )
-        nq = self.problem.robot.model.nq
-        total, terms, q, outcome = np.split(rows, [1, 4, 4 + nq], axis=1)
+        first = 1 + len(self.terms)  # of the columns of q
+        total, terms, q, outcome = np.split(rows, [1, first, rows.shape[1] - 1], axis=1)
         return Scores(total[:, 0], terms, q, outcome[:, 0].astype(np.int8))
 
     def centre_of_mass(self, end: End) -> Array:
@@ -130,7 +139,7 @@ class ScoreFunction:
         base, grasps = q_base[None], grasp[None]
         score = self(end, base, grasps)
         outcome = Outcome(score.outcome[0])
-        terms = dict(zip(TERMS, score.terms[0].tolist(), strict=True))
+        terms = dict(zip(self.terms, score.terms[0].tolist(), strict=True))
         if outcome != Outcome.SCORED:
             return Breakdown(outcome, 0.0, terms)
         T_world_tool = self._in_world(end, self.holds(grasps).T_object_tool)
@@ -190,14 +199,15 @@ class ScoreFunction:
 
     def _evaluate(self, end: End, q_base: Array, grasps: Array) -> Array:
         """The rows of `_scores`: total, terms, q, outcome."""
+        first = 1 + len(self.terms)  # of the columns of q
         nq = self.problem.robot.model.nq
-        result = np.zeros((len(q_base), 4 + nq + 1))
-        result[:, 4:-1] = np.nan
+        result = np.zeros((len(q_base), first + nq + 1))
+        result[:, first:-1] = np.nan
         outcome, branches = self._branches(end, q_base, grasps)
         best = self._search.best(branches, outcome)
         result[best.row, 0] = best.terms.sum(axis=1)
-        result[best.row, 1:4] = best.terms
-        result[best.row, 4:-1] = best.q
+        result[best.row, 1:first] = best.terms
+        result[best.row, first:-1] = best.q
         result[:, -1] = outcome
         return result
 
