@@ -32,7 +32,7 @@ class Outcome(IntEnum):
 
 
 _LABELS = {
-    Outcome.OUT_OF_BOUNDS: "base outside its bounds",
+    Outcome.OUT_OF_BOUNDS: "base out of bounds or in a zone",
     Outcome.BASE_COLLISION: "base in collision",
     Outcome.NO_CONTACT: "hand does not close on the object",
     Outcome.LOW_QUALITY: "grasp quality too low",
