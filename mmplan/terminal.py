@@ -93,11 +93,13 @@ def verification_table(plan: Plan, report: VerificationReport) -> str:
 
 
 def _ends(task: TaskPlan) -> Table:
-    table = _table("", "base x, y", *task.start.scores, "score")
+    joints = len(task.start.base)
+    place = ", ".join(("base x", "y", "heading")[:joints])
+    table = _table("", *[place][:joints], *task.start.scores, "score")
     for name, end in (("start", task.start), ("goal", task.goal)):
-        base = ", ".join(f"{x:.3f}" for x in end.base)
+        base = [", ".join(f"{x:.3f}" for x in end.base)][:joints]
         terms = [f"{value:.1f}" for value in end.scores.values()]
-        table.add_row(name, base, *terms, f"{sum(end.scores.values()):.1f}")
+        table.add_row(name, *base, *terms, f"{sum(end.scores.values()):.1f}")
     return table
 
 

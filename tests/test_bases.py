@@ -15,6 +15,7 @@ from mmplan.plan import Plan
 from mmplan.problem import Problem
 from mmplan.scene_file import load_problem
 from mmplan.shapes import Array
+from mmplan.terminal import plan_tables, show
 from mmplan.verification import verify
 from tests.wheels import TURNING_RADIUS, cup_scene, puma_on
 
@@ -140,3 +141,15 @@ def test_the_same_seed_gives_the_same_drive() -> None:
     again = solve(problem, seed=1)
     for one, other in zip(plan.tasks[0].segments, again.tasks[0].segments, strict=True):
         assert np.array_equal(one.positions, other.positions)
+
+
+@pytest.mark.parametrize(
+    ("kind", "column"), [("planar", "base x, y, heading  grasp"), ("fixed", "  grasp")]
+)
+def test_a_plan_is_shown_with_the_joints_that_its_base_has(
+    kind: str, column: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    show(*plan_tables(solved(kind)[1], None))
+    header = capsys.readouterr().out.splitlines()[1]
+    assert column in header
+    assert ("base" in header) == (kind == "planar")
