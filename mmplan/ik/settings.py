@@ -21,7 +21,7 @@ class IkSettings:
 
     samples: int = 48
     lift_samples: int = 3
-    solutions: int = 16
+    solutions: int = 32
     seeds: int = 16
     steps: int = 40
     table: int = 4096

@@ -23,6 +23,8 @@ Indices = npt.NDArray[np.int64]
 
 # What a term counts that is at the robot's scale.
 POINTS = 50.0
+# Pairs of base and grasp that are evaluated in one go.
+_PAIRS = 1024
 TERMS = ("grasp", "manipulability", "clutter")
 # A term more, where a scene gives it a weight.
 JOINT_MARGIN = "joint_margin"
@@ -91,8 +93,8 @@ class ScoreFunction:
         self._feasibility = {
             end: Feasibility(problem, w, task.object) for end, w in self.worlds.items()
         }
-        self._closer = HandCloser(robot, world.scenery.objects[task.object])
-        self._quality = quality_measure(problem, task, family, self._closer)
+        self.closer = HandCloser(robot, world.scenery.objects[task.object])
+        self._quality = quality_measure(problem, task, family, self.closer)
         self._centre = world.scenery.centre_of_mass(task.object)
         self.clutter = Clutter(
             robot, {e: w.without(task.object) for e, w in self.worlds.items()}
@@ -182,7 +184,7 @@ class ScoreFunction:
     def _hold(self, grasps: Array) -> Array:
         """The rows of `_holds`: pose, opened and closed hand, quality, outcome."""
         T_object_tool = self.family.tool_poses(grasps)
-        closings = self._closer.close(T_object_tool)
+        closings = self.closer.close(T_object_tool)
         outcome = np.where(closings.touches, Outcome.SCORED, Outcome.NO_CONTACT)
         quality = self._quality(Hold(grasps, T_object_tool, closings))
         low = quality < self.problem.score.min_quality
@@ -198,7 +200,15 @@ class ScoreFunction:
         )
 
     def _evaluate(self, end: End, q_base: Array, grasps: Array) -> Array:
-        """The rows of `_scores`: total, terms, q, outcome."""
+        """The rows of `_scores`, a part at a time, as each may have many branches."""
+        parts = [
+            self._rows(end, q_base[i : i + _PAIRS], grasps[i : i + _PAIRS])
+            for i in range(0, max(1, len(q_base)), _PAIRS)
+        ]
+        return np.concatenate(parts)
+
+    def _rows(self, end: End, q_base: Array, grasps: Array) -> Array:
+        """Rows of `_scores`: total, terms, q, outcome."""
         first = 1 + len(self.terms)  # of the columns of q
         nq = self.problem.robot.model.nq
         result = np.zeros((len(q_base), first + nq + 1))

@@ -11,6 +11,7 @@ from benchmarks._wheel_arms import Arm, load_arm
 from mmplan.assets import example_robots
 from mmplan.ik.any_arm import auto
 from mmplan.ik.redundant import Redundant
+from mmplan.ik.settings import IkSettings
 from tests.ik.laws import (
     assert_batch_is_single,
     assert_masks,
@@ -62,7 +63,7 @@ def test_poses_are_solved_within_limits(arm: Arm) -> None:
     assert_no_duplicates(solutions)
     assert_masks(solutions, solver.chain.lower, solver.chain.upper)
     assert solutions.within.any(axis=1).mean() >= 0.99
-    assert solutions.exists.sum(axis=1).max() <= 16
+    assert solutions.exists.sum(axis=1).max() <= IkSettings().solutions
     solved = solutions.within.any(axis=1)
     np.testing.assert_array_equal(solutions.within[solved], solutions.exists[solved])
 
