@@ -74,6 +74,10 @@ def best_camera(exhibit: Exhibit, aspect: float = 1.6) -> Camera:
 def sun_of(exhibit: Exhibit, camera: Camera) -> Camera:
     """Where the light comes from: high beside the camera, where it reaches most."""
     points, blockers = _points_of_interest(exhibit), _blockers(exhibit)
+    low, high = points.min(axis=0) - 2.0 * _ROOM, points.max(axis=0) + 2.0 * _ROOM
+    x, y = np.meshgrid(*np.linspace(low[:2], high[:2], 5).T)
+    floor = np.stack([x.ravel(), y.ravel(), np.full(x.size, 0.01)], axis=1)
+    points = np.concatenate([points, floor])
     suns = [
         replace(camera, azimuth=camera.azimuth + turn, elevation=55.0, distance=6.0)
         for turn in _SUNS

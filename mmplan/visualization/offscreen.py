@@ -145,6 +145,7 @@ def _set_the_stage(mujoco: ModuleType, spec: Any, size: tuple[int, int]) -> None
     visual.headlight.diffuse = [0.3] * 3
     visual.headlight.specular = [0.05] * 3
     visual.map.znear, visual.map.zfar = 0.01, 50.0
+    visual.map.shadowclip = 1.5  # times the extent: as far as floors reach
     spec.stat.extent, spec.stat.center = 3.0, [0.0, 0.0, 0.8]
     spec.add_texture(
         name="sky",

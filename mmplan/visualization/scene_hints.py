@@ -17,7 +17,7 @@ _START, _GOAL = Colour(0.16, 0.45, 0.84, 0.3), Colour(0.88, 0.42, 0.08, 0.3)
 _SAMPLES = 24
 _FINGER, _WIDTH, _WIRE = 0.05, 0.03, 0.0015
 # The annuli of start and goal lie this high above the floor, lest they flicker, m.
-_HEIGHTS = (0.004, 0.008)
+_HEIGHTS = (0.015, 0.03)
 
 
 def scene_hints(problem: Problem) -> Iterator[Part]:
@@ -28,8 +28,10 @@ def scene_hints(problem: Problem) -> Iterator[Part]:
 
 
 def _annuli(problem: Problem) -> Iterator[Part]:
-    """Where the base can stand to reach each end of each task."""
+    """Where the base can stand to reach each end of each task, if it can drive."""
     robot = problem.robot
+    if len(robot.base) == 0:
+        return
     scenery = Scenery.of_problem(problem)
     annulus = ring(robot.base_radius, robot.reach)
     for number, task in enumerate(problem.tasks):
