@@ -31,7 +31,7 @@ class HandRoom:
             for body in robot.geometry.geometryObjects
             if body.parentJoint == robot.tool_joint
         )
-        self._palm = Finger(tuple(palm))
+        self.palm = Finger(tuple(palm))
 
     def is_free(
         self, surface: coal.BVHModelBase, T_object_tool: Array, widths: Array
@@ -46,7 +46,7 @@ class HandRoom:
         around = hands_open_by(robot, widths + _SPARE)
         opened = np.broadcast_to(robot.hand_open, around.shape)
         fingers = [f for drive in self._fingers.drives for f in drive.fingers.values()]
-        parts = [(self._palm, opened)]
+        parts = [(self.palm, opened)]
         parts += [(finger, hand) for finger in fingers for hand in (opened, around)]
         for part, hand in parts:
             rows = np.flatnonzero(free)
