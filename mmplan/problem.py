@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from mmplan.grasps import GraspFamily
     from mmplan.robot import Robot
+    from mmplan.scoring.term import ScoreTerm
     from mmplan.shapes import Array, Fixture, Shape
     from mmplan.zones import Zone
 
@@ -61,6 +62,18 @@ class Task:
     retreat: float | None = None
 
 
+@dataclass(frozen=True, eq=False)
+class WeightedTerm:
+    """A term of one's own in the score: `term` is called as any `ScoreTerm` is.
+
+    Its values are at least 0; one that is 1 with a weight of 1 counts 50 points.
+    """
+
+    name: str
+    term: ScoreTerm
+    weight: float = 1.0
+
+
 @dataclass(frozen=True)
 class ScoreSettings:
     """Weights of the score's terms, and what grasp quality is.
@@ -69,7 +82,8 @@ class ScoreSettings:
     The paper's grasps all close by force, so that it leaves grasp quality out; so do
     the default weights, and the default measure is what the grasp family vouches for.
     `joint_margin` rewards joints of the arm that stay away from their limits, which the
-    paper does not; without a weight it is no term at all.
+    paper does not; without a weight it is no term at all. `more` are terms of one's
+    own, which scene files do not have.
     """
 
     grasp: float = 0.0
@@ -78,6 +92,7 @@ class ScoreSettings:
     min_quality: float = 0.0
     quality: str = "family"
     joint_margin: float = 0.0
+    more: tuple[WeightedTerm, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ from mmplan.explanation.settings import (
 )
 from mmplan.explanation.survey import is_reached
 from mmplan.optimizers import search_space
-from mmplan.problem import Problem, ScoreSettings
+from mmplan.problem import Problem
 from mmplan.scoring import End
 
 _SHIFTS = (0.03, 0.1, 0.4)  # m
@@ -106,7 +106,14 @@ def _quick(problem: Problem) -> Problem:
 
     That is the clutter term and most of the planner's patience.
     """
-    settings = ScoreSettings(0.0, 1.0, 0.0, problem.score.min_quality)
+    settings = replace(
+        problem.score,
+        grasp=0.0,
+        manipulability=1.0,
+        clutter=0.0,
+        joint_margin=0.0,
+        more=(),
+    )
     iterations = min(_ITERATIONS, problem.planner.iterations)
     planner = replace(problem.planner, iterations=iterations, shortcuts=0)
     return replace(problem, score=settings, planner=planner)

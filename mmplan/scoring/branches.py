@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -12,11 +12,10 @@ from mmplan.kinematics import ForwardKinematics
 from mmplan.robot import Robot
 from mmplan.scoring.clutter import Clutter
 from mmplan.scoring.feasibility import Feasibility
-from mmplan.scoring.joint_margin import joint_margin
 from mmplan.scoring.manipulability import Manipulability
 from mmplan.scoring.outcome import End, Outcome
 from mmplan.scoring.selection import best_of_rows
-from mmplan.scoring.term import Grasped
+from mmplan.scoring.term import Grasped, ScoreTerm
 from mmplan.shapes import Array
 
 Indices = npt.NDArray[np.int64]
@@ -65,12 +64,13 @@ class BranchSearch:
         feasibility: Mapping[End, Feasibility],
         clutter: Clutter,
         factors: Array,
+        more: Sequence[ScoreTerm] = (),
     ) -> None:
         """Prepare for the `factors` of grasp quality, manipulability and clutter.
 
-        A fourth one, if there is one, is that of the joints' margin.
+        After these come the factors of the terms in `more`.
         """
-        self._robot = robot
+        self._more = more
         self._kinematics = ForwardKinematics(robot.model)
         self._manipulability = Manipulability(robot)
         self._feasibility = feasibility
@@ -123,7 +123,19 @@ class BranchSearch:
             terms[chunk, 0] = branches.quality[chunk]
             terms[chunk, 1] = self._manipulability.at(T)
             clutter[chunk] = self._clutter.bound(grasped, T)
-            if len(self._factors) > 3:
-                terms[chunk, 3] = joint_margin(self._robot, grasped.q)
+            for column, term in enumerate(self._more, start=3):
+                terms[chunk, column] = _sound(term(grasped), term)
         terms *= self._factors
         return terms, terms.sum(axis=1) + self._factors[2] * clutter
+
+
+def _sound(values: Array, term: ScoreTerm) -> Array:
+    """The values of a term, which may be anybody's.
+
+    Raises:
+        ValueError: One is negative or not finite.
+    """
+    if not np.all(np.isfinite(values) & (values >= 0.0)):
+        name = type(term).__name__
+        raise ValueError(f"{name}: a value of this term is negative or not finite")
+    return values

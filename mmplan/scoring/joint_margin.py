@@ -5,7 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from mmplan.robot import Robot
+from mmplan.scoring.term import Grasped
 from mmplan.shapes import Array
+
+
+class JointMargin:
+    """The margin of the arm's joints as a term of the score."""
+
+    def __init__(self, robot: Robot) -> None:
+        """Prepare for one robot."""
+        self._robot = robot
+
+    def __call__(self, grasped: Grasped) -> Array:
+        """The margin of each configuration, (n,)."""
+        return joint_margin(self._robot, grasped.q)
 
 
 def joint_margin(robot: Robot, q: Array) -> Array:

@@ -9,12 +9,13 @@ import numpy.typing as npt
 
 from mmplan.collision import CollisionWorld, Contact, HandCloser
 from mmplan.grasps import GraspFamily
-from mmplan.problem import Problem, Task
+from mmplan.problem import Problem, Task, WeightedTerm
 from mmplan.scoring.branches import Branches, BranchSearch
 from mmplan.scoring.breakdown import Breakdown, links_of
 from mmplan.scoring.clutter import Clutter
 from mmplan.scoring.feasibility import Arms, Feasibility
 from mmplan.scoring.grasp_quality import Hold, quality_measure
+from mmplan.scoring.joint_margin import JointMargin
 from mmplan.scoring.outcome import End, Outcome
 from mmplan.scoring.term import Grasped, RowCache, row_keys
 from mmplan.shapes import Array
@@ -50,14 +51,26 @@ def term_factors(problem: Problem) -> Array:
         settings.grasp,
         settings.manipulability / scales.manipulability,
         settings.clutter / scales.clutter,
-        settings.joint_margin,
+        *(more.weight for more in _more_terms(problem)),
     ]
-    return POINTS * np.array(factors[: len(term_names(problem))])
+    return POINTS * np.array(factors)
 
 
 def term_names(problem: Problem) -> tuple[str, ...]:
     """The terms that a problem's score is made of."""
-    return (*TERMS, JOINT_MARGIN) if problem.score.joint_margin > 0.0 else TERMS
+    return (*TERMS, *(more.name for more in _more_terms(problem)))
+
+
+def _more_terms(problem: Problem) -> tuple[WeightedTerm, ...]:
+    """The terms that the paper does not have."""
+    settings = problem.score
+    if settings.joint_margin == 0.0:
+        return settings.more
+    margin = JointMargin(problem.robot)
+    return (
+        WeightedTerm(JOINT_MARGIN, margin, settings.joint_margin),
+        *settings.more,
+    )
 
 
 class Holds(NamedTuple):
@@ -102,7 +115,11 @@ class ScoreFunction:
         self.terms = term_names(problem)
         self.factors = term_factors(problem)
         self._search = BranchSearch(
-            robot, self._feasibility, self.clutter, self.factors
+            robot,
+            self._feasibility,
+            self.clutter,
+            self.factors,
+            [more.term for more in _more_terms(problem)],
         )
         self._holds = RowCache()
         self._bases = {end: RowCache() for end in End}
