@@ -7,6 +7,7 @@ from typing import NamedTuple
 import coal
 import numpy as np
 
+from mmplan.kinematics import turned
 from mmplan.shapes import Array
 
 
@@ -49,5 +50,5 @@ def touching_depth(first: Bounds, second: Bounds, tolerance: float) -> float:
 def moved_bounds(local: Bounds, T: Array) -> Bounds:
     """Bounds in the world of boxes `local` (m, 3) moved by poses T (..., m, 4, 4)."""
     R = T[..., :3, :3]
-    centre = (R @ local.centre[..., None])[..., 0] + T[..., :3, 3]
-    return Bounds(centre, (np.abs(R) @ local.half[..., None])[..., 0])
+    centre = turned(R, local.centre) + T[..., :3, 3]
+    return Bounds(centre, turned(np.abs(R), local.half))

@@ -151,8 +151,12 @@ def _taken(bounds: Bounds, which: Indices | Mask) -> Bounds:
 
 def _overlap(a: Bounds, b: Bounds) -> Mask:
     """Whether boxes overlap, broadcast over all but the last axis."""
-    within = np.abs(a.centre - b.centre) <= a.half + b.half
-    overlap: Mask = within[..., 0] & within[..., 1] & within[..., 2]
+    x, y, z = (
+        np.abs(a.centre[..., axis] - b.centre[..., axis])
+        <= a.half[..., axis] + b.half[..., axis]
+        for axis in range(3)
+    )
+    overlap: Mask = x & y & z
     return overlap
 
 

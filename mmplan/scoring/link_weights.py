@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from mmplan.collision import local_bounds
-from mmplan.kinematics import ForwardKinematics
+from mmplan.kinematics import ForwardKinematics, turned
 from mmplan.robot import Robot
 from mmplan.shapes import Array
 
@@ -36,23 +36,13 @@ class LinkWeights:
 
     def at(self, T: Array) -> Array:
         """The weights, from the poses (n, njoints, 4, 4) of all joints."""
-        middles = _moved(T[:, self._joints], self._middles)
+        joints, base = T[:, self._joints], T[:, self._base_joint]
+        middles = turned(joints[..., :3, :3], self._middles) + joints[..., :3, 3]
         lever = self._robot.model.inertias[self._base_joint].lever
-        centre = _moved(T[:, self._base_joint], lever)
+        centre = turned(base[:, :3, :3], lever) + base[:, :3, 3]
         distance = np.linalg.norm(middles - centre[:, None], axis=2)
         weights: Array = 1.0 / np.maximum(distance, self._robot.base_radius)
         return weights
-
-
-def _moved(T: Array, points: Array) -> Array:
-    """Points (..., 3) moved by poses (..., 4, 4), each as if it were alone.
-
-    Matrix products may round differently with the number of points.
-    """
-    x, y, z = np.moveaxis(points, -1, 0)[..., None]
-    R = T[..., :3, :3]
-    moved: Array = R[..., 0] * x + R[..., 1] * y + R[..., 2] * z + T[..., :3, 3]
-    return moved
 
 
 def _corners(body: pin.GeometryObject) -> Array:
