@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmplan.pipeline import after_task
 from mmplan.plan import Plan
 from mmplan.problem import Problem
 from mmplan.visualization.search import Search, searches
@@ -86,3 +87,13 @@ def test_a_search_can_be_ended(problem: Problem, plan: Plan) -> None:
 
     with pytest.raises(EndedError):
         list(searches(problem, plan, end))
+
+
+def test_a_task_leaves_its_object_at_the_goal_of_that_task(
+    problem: Problem, plan: Plan
+) -> None:
+    second = replace(problem, tasks=problem.tasks[1:])
+    left = after_task(second, plan.tasks[1])
+    bottle = left.object("bottle").T_world_object
+    assert np.array_equal(bottle, problem.tasks[1].T_world_goal)
+    assert np.array_equal(left.q_start, plan.tasks[1].segments[-1].positions[-1])

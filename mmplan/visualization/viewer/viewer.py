@@ -122,7 +122,8 @@ class Viewer:
             found = list(searches(problem, plan, lambda _: self._stop_if_closed()))
             candidates.CandidatePanel(self._server, exhibit, found)
             candidates.PopulationPanel(self._server, found)
-            waiting.remove()
+            # Removed, it would be missed by a browser that connects in this moment.
+            waiting.visible = False
         except _ClosedError:
             return
         except MmplanError as error:  # a scene whose optimizer does not run here
