@@ -82,6 +82,8 @@ class TimedScore(ScoreFunction):
         self._watch = watch
         self._distances = self.clutter.distances
         self.clutter.distances = self._timed_distances  # type: ignore[method-assign]
+        self._bound = self.clutter.bound
+        self.clutter.bound = self._timed_bound  # type: ignore[method-assign]
 
     def __call__(self, end: End, q_base: Array, grasps: Array) -> Scores:
         """Score bases (n, b) with grasp genes (n, g), row by row, at one end."""
@@ -91,6 +93,10 @@ class TimedScore(ScoreFunction):
     def _timed_distances(self, grasped: Grasped) -> Array:
         with self._watch.stage(DISTANCE):
             return self._distances(grasped)
+
+    def _timed_bound(self, grasped: Grasped, T_world_joint: Array) -> Array:
+        with self._watch.stage(DISTANCE):
+            return self._bound(grasped, T_world_joint)
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,6 +126,10 @@ class _TimedWorld(CollisionWorld):
     def in_collision(self, q: Array) -> npt.NDArray[np.bool_]:
         with self.watch.stage(COLLISION):
             return super().in_collision(q)
+
+    def in_collision_at(self, T_world_joint: Array) -> npt.NDArray[np.bool_]:
+        with self.watch.stage(COLLISION):
+            return super().in_collision_at(T_world_joint)
 
     def any_collision(self, q: Array) -> bool:
         with self.watch.stage(COLLISION):
