@@ -18,6 +18,7 @@ from mmplan.exceptions import (
 )
 
 if TYPE_CHECKING:
+    from mmplan.explanation import explain
     from mmplan.pipeline import solve
     from mmplan.plan import Plan
     from mmplan.problem import Problem
@@ -35,6 +36,7 @@ __all__ = [
     "Problem",
     "VerificationError",
     "examine",
+    "explain",
     "load_problem",
     "load_robot",
     "scene_schema",
@@ -48,6 +50,7 @@ _LATE = {
     "Plan": "mmplan.plan",
     "Problem": "mmplan.problem",
     "examine": "mmplan.verification",
+    "explain": "mmplan.explanation",
     "load_problem": "mmplan.scene_file",
     "load_robot": "mmplan.robot_build",
     "scene_schema": "mmplan.schema",
