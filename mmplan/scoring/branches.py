@@ -126,7 +126,7 @@ class BranchSearch:
             for column, term in enumerate(self._more, start=3):
                 terms[chunk, column] = _sound(term(grasped), term)
         terms *= self._factors
-        return terms, terms.sum(axis=1) + self._factors[2] * clutter
+        return terms, terms.sum(axis=1) + np.maximum(self._factors[2] * clutter, 0.0)
 
 
 def _sound(values: Array, term: ScoreTerm) -> Array:
