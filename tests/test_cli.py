@@ -444,3 +444,17 @@ def test_a_reader_that_leaves_early_is_no_error() -> None:
     assert process.stderr.read() == b""
     process.stderr.close()
     assert process.wait(timeout=60) == 0
+
+
+def test_what_is_shipped_is_listed_without_the_data_of_other_packages(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(assets, "example_robots", lambda: None)
+    assert main(["robots", "--json"]) == 0
+    told = capsys.readouterr()
+    assert [row["name"] for row in json.loads(told.out)] == ["puma_mobile"]
+    assert "tiago" in told.err
+    assert "pip install 'mmplan[robots]'" in told.err
+    assert main(["scenes", "--json"]) == 0
+    names = [row["name"] for row in json.loads(capsys.readouterr().out)]
+    assert names == list(assets.scene_names())

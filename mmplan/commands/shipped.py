@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from typing import Any
 
 from mmplan import assets
 from mmplan.commands.arguments import add_json
 from mmplan.commands.results import SOLVED, print_json
+from mmplan.files.suggestions import listed
+
+ROBOTS_PACKAGE = "example-robot-data"
 
 
 def add(commands: Any) -> None:
@@ -32,7 +36,11 @@ def _robots(options: argparse.Namespace) -> int:
     from mmplan.robot_setup.summary import summary
     from mmplan.terminal import grid, show
 
-    rows = [summary(load_robot(name)) for name in assets.robot_names()]
+    names, elsewhere = _robots_here()
+    rows = [summary(load_robot(name)) for name in names]
+    if elsewhere:
+        needs = f"{ROBOTS_PACKAGE}: pip install 'mmplan[robots]'"
+        print(f"mmplan: {listed(elsewhere)} need {needs}", file=sys.stderr)
     if options.json:
         print_json([row.to_json() for row in rows])
     else:
@@ -41,12 +49,28 @@ def _robots(options: argparse.Namespace) -> int:
     return SOLVED
 
 
-def _scenes(options: argparse.Namespace) -> int:
-    from mmplan.scene_reader import read_scene
+def _robots_here() -> tuple[list[str], list[str]]:
+    """The shipped robots that can be loaded, and those whose data is not installed."""
+    from mmplan.files.yaml_reader import read_document
 
+    here: list[str] = []
+    elsewhere: list[str] = []
+    for name in assets.robot_names():
+        document = read_document(assets.robots_folder() / name / "robot.yaml")
+        of_package = document.get("urdf", ROBOTS_PACKAGE.replace("-", "_")) is not None
+        missing = of_package and assets.example_robots() is None
+        (elsewhere if missing else here).append(name)
+    return here, elsewhere
+
+
+def _scenes(options: argparse.Namespace) -> int:
+    from mmplan.files.yaml_reader import read_document
+
+    documents = [
+        (name, read_document(assets.find_scene(name))) for name in assets.scene_names()
+    ]
     return _list(
-        [(name, read_scene(name).section.description) for name in assets.scene_names()],
-        options.json,
+        [(name, str(d.get("description") or "")) for name, d in documents], options.json
     )
 
 
