@@ -89,10 +89,13 @@ def seen(pair: PairFacts) -> str:
 
 def _costs(inspection: Inspection) -> str:
     ik, name = inspection.ik, inspection.robot.ik_solver
+    solver = inspection.robot.ik
+    proof = "" if solver.complete else "; cannot prove a pose out of reach"
     return (
         f"inverse kinematics '{name}': {100 * ik.solved:.1f} % of {ik.poses} reachable "
         f"poses solved, {ik.branches:.1f} solutions a pose, error {ik.error:.1e} m, "
         f"{1e6 * ik.seconds:.1f} µs a pose\n"
+        f"  {solver.explanation}{proof}\n"
         f"collision with itself: {1e6 * inspection.collision:.1f} µs a configuration"
     )
 
@@ -131,7 +134,12 @@ def as_json(inspection: Inspection, warnings: list[str]) -> dict[str, Any]:
             }
             for pair in inspection.pairs
         ],
-        "ik": {"solver": robot.ik_solver, **inspection.ik._asdict()},
+        "ik": {
+            "solver": robot.ik_solver,
+            "how": robot.ik.explanation,
+            "complete": robot.ik.complete,
+            **inspection.ik._asdict(),
+        },
         "collision_seconds": inspection.collision,
         "warnings": warnings,
     }
