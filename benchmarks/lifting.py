@@ -7,7 +7,8 @@ gravity pulls along the object's -z. Both fingers move alike, as those of most
 parallel grippers do, and the palm does not give way. A grasp holds if the object is
 then still within 5 cm of where it was in the hand. Printed are the share that holds in
 the top decile and in the bottom half by quality, and the rank correlation of quality
-and holding.
+and holding. Where all grasps are rated 0, none has a weight margin, and there is no
+top decile.
 
     python benchmarks/lifting.py [--grasps 100] [--objects mug bowl ...]
 
@@ -178,11 +179,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
             )
         order = np.argsort(-quality, kind="stable")
         top = held[order[: max(1, len(order) // 10)]]
+        if not quality.any():
+            top = np.empty(0, np.bool_)
         tops.append(top)
         all_quality.append(quality)
         all_held.append(held)
         bottom = held[order[len(order) // 2 :]].mean()
-        row = [name, len(T), f"{top.mean():.0%}", f"{bottom:.0%}", rank(quality, held)]
+        best = f"{top.mean():.0%}" if len(top) else "all are rated 0"
+        row = [name, len(T), best, f"{bottom:.0%}", rank(quality, held)]
         print("|", *(f"{cell} |" for cell in row), flush=True)
     quality, held = np.concatenate(all_quality), np.concatenate(all_held)
     share = f"{np.concatenate(tops).mean():.0%}"
@@ -190,7 +194,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def rank(quality: Array, held: Array) -> str:
-    """The rank correlation of quality and holding; none where all hold or none do."""
+    """The rank correlation of quality and holding; none where either is constant."""
+    if np.ptp(quality) == 0.0:
+        return ""
     if held.all() or not held.any():
         return "all hold" if held.all() else "none holds"
     return f"{spearmanr(quality, held).statistic:.2f}"
