@@ -1,8 +1,16 @@
 """Settings that all tests share."""
 
+import ctypes.util
+import os
+
 from hypothesis import settings
 
 # Examples are timed on machines that other work shares: a deadline would fail them for
 # being slow. They are derived from the test alone, so that a run can be repeated.
 settings.register_profile("mmplan", deadline=None, derandomize=True)
 settings.load_profile("mmplan")
+
+# MuJoCo decides how to draw when it is first imported, which may be by a test that
+# draws nothing: without a window, for those that do.
+if ctypes.util.find_library("EGL"):
+    os.environ.setdefault("MUJOCO_GL", "egl")
