@@ -54,9 +54,10 @@ def _body_row(body: LinkBodies, joint: str) -> list[str]:
 
 def _tool(inspection: Inspection) -> str:
     tool = inspection.tool
-    xyz = ", ".join(f"{x:.4g}" for x in tool.T_link_tool[:3, 3])
+    T = tool.T_link_tool.round(4) + 0.0  # neither 1e-17 nor -0
+    xyz = ", ".join(f"{x:.4g}" for x in T[:3, 3])
     axes = ", ".join(
-        f"{name} = [{', '.join(f'{x:.2f}' for x in tool.T_link_tool[:3, k])}]"
+        f"{name} = [{', '.join(f'{x:.2f}' for x in T[:3, k])}]"
         for k, name in ((2, "approach z"), (1, "closing y"))
     )
     return f"tool frame '{tool.frame}' in '{tool.link}': at [{xyz}] m, {axes}"
