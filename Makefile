@@ -11,7 +11,7 @@ BENCHMARKS ?= $(filter-out benchmarks/_% benchmarks/make_%,$(sort $(wildcard \
 	benchmarks/*.py)))
 SUPPORTED = 'import sys; sys.exit(not (3, 10) <= sys.version_info[:2] < (3, 14))'
 
-.PHONY: demo test lint format bench clean
+.PHONY: demo test lint format docs bench clean
 
 demo: $(VENV)/.installed
 	$(VENV)/bin/mmplan solve $(SCENE) --seed 7 -o plan.json
@@ -29,6 +29,10 @@ lint: $(VENV)/.installed-dev
 format: $(VENV)/.installed-dev
 	$(VENV)/bin/ruff format
 	$(VENV)/bin/ruff check --fix
+
+docs: $(VENV)/.installed-docs
+	$(VENV)/bin/sphinx-build -W --keep-going -q -c docs -d build/doctrees . build/site
+	@echo "open build/site/index.html"
 
 bench: $(VENV)/.installed
 	@for script in $(BENCHMARKS); do \
