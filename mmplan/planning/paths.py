@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import time
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -13,6 +14,8 @@ from mmplan.planning.metric import Metric
 from mmplan.planning.planners import require_planner
 from mmplan.planning.search import Search, search
 from mmplan.planning.shortening import path_length, shorten
+from mmplan.planning.upright import UprightWorld
+from mmplan.planning.upright_search import UprightSearch, thinned
 from mmplan.planning.world import PlanningWorld, contact_names
 from mmplan.problem import PlannerSettings
 from mmplan.shapes import Array, read_only
@@ -52,6 +55,8 @@ class PathResult:
     iterations: int = 0
     states: int = 0  # checked
     edges: int = 0  # checked
+    first: Array | None = None  # (m, nq) the path before it was made short
+    shortening: float = 0.0  # CPU s that this took
 
     @property
     def found(self) -> bool:
@@ -94,13 +99,34 @@ def plan_path(
     seed = int(rng.integers(1, 2**31))
     if straight is not None:
         return _success(checker, metric, straight, q_goals)
-    found = search(checker, q_start, q_goals[usable], joints, settings, seed)
+    found = _search(checker, q_start, q_goals[usable], joints, settings, seed)
     if found.waypoints is None:
         return _exhausted(checker, found, settings)
     waypoints = np.vstack([q_start, found.waypoints[1:]])
     waypoints = _with_exact_end(metric.unwrapped(waypoints), metric, q_goals[usable])
+    begin = time.process_time()
+    if isinstance(world, UprightWorld):
+        waypoints = thinned(waypoints, checker)
     path = shorten(waypoints, checker, joints, settings.shortcuts, rng)
-    return _success(checker, metric, path, q_goals, found.iterations)
+    shortening = time.process_time() - begin
+    result = _success(checker, metric, path, q_goals, found.iterations)
+    return replace(result, first=read_only(waypoints), shortening=shortening)
+
+
+def _search(
+    checker: PathChecker,
+    q_start: Array,
+    q_goals: Array,
+    joints: MovingJoints,
+    settings: PlannerSettings,
+    seed: int,
+) -> Search:
+    """A search by the planner wanted; where an object is kept upright, by our own."""
+    if isinstance(checker.world, UprightWorld):
+        rng = np.random.default_rng(seed)
+        own = UprightSearch(checker, checker.world.rule, joints, rng)
+        return own.run(q_start, q_goals, settings)
+    return search(checker, q_start, q_goals, joints, settings, seed)
 
 
 def _require_still(

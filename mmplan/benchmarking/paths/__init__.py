@@ -1,0 +1,1 @@
+"""Benchmarks of path planners on problems that others made."""
