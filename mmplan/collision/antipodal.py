@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 _MOST_ROUNDS = 12
 # How many candidates are tried for each grasp that is wanted, each round.
 _TRIES = 2.0
+# A new number for each change of the sampling: what caches hold is then made anew.
+_METHOD = 2
 # The thinnest thing between the fingers that is not noise of the mesh, m.
 _THINNEST = 1e-3
 # Rays begin this far inside the surface, as a share of the hand's opening.
@@ -33,10 +35,15 @@ _INSET = 1e-4
 
 
 class Pairs(NamedTuple):
-    """Two places on the surface that pads can press together, (n, 3) each, m."""
+    """Two places on the surface that pads can press together, n of them.
 
-    first: Array
-    second: Array
+    `closing` is the direction in which the pads come together, from the first place to
+    the second: that in which flat pads are as flush with both as they can be.
+    """
+
+    first: Array  # (n, 3), m
+    second: Array  # (n, 3), m
+    closing: Array  # (n, 3), unit
 
 
 def antipodal_poses(
@@ -47,10 +54,11 @@ def antipodal_poses(
     Points are drawn by area, and a ray goes from each into the object, at random
     within half of the friction cone about the inner normal. Where it comes out, the
     two are a pair if they are at most as far apart as the hand opens, and the line
-    between them is in the friction cones of both. The tool stands in the middle,
-    turned about that line at random; where the palm or an opened finger meets the
-    surface, the grasp is left out. The same seed gives the same grasps, and they are
-    kept in the user's cache folder under the hash of mesh, hand and settings.
+    between them is in the friction cones of both. The tool stands in the middle and
+    closes along the mean of the two normals, turned about that at random; where the
+    palm or an opened finger meets the surface, the grasp is left out. The same seed
+    gives the same grasps, and they are kept in the user's cache folder under the hash
+    of mesh, hand and settings.
 
     Raises:
         InputError: The mesh cannot be read, or the extra `meshes` is not installed.
@@ -59,7 +67,7 @@ def antipodal_poses(
     vertices, triangles = read_triangles(model)
     room = HandRoom(robot)
     key = hashlib.sha256(vertices.tobytes() + triangles.tobytes() + room.signature())
-    key.update(repr((friction, samples, seed, _TRIES)).encode())
+    key.update(repr((_METHOD, friction, samples, seed, _TRIES)).encode())
 
     def sample() -> list[Array]:
         surface = _surface(mesh, vertices, triangles)
@@ -71,7 +79,8 @@ def antipodal_poses(
                 surface, hand, friction, int(_TRIES * samples) + 1, rng
             )
             T = _poses(pairs, hand, rng)
-            widths = np.linalg.norm(pairs.second - pairs.first, axis=1)
+            apart = pairs.second - pairs.first
+            widths = np.einsum("ni,ni->n", apart, pairs.closing)
             found.append(T[room.is_free(model, T, widths)])
             if sum(map(len, found)) >= samples:
                 break
@@ -103,7 +112,9 @@ def antipodal_pairs(
     order = order[good[order]]
     _, chosen = np.unique(ray[order], return_index=True)
     rows = order[chosen]
-    return Pairs(first[ray[rows]], hits[rows])
+    closing = normals[hit_face[rows]] - normals[face[ray[rows]]]
+    closing /= np.linalg.norm(closing, axis=1, keepdims=True)
+    return Pairs(first[ray[rows]], hits[rows], closing)
 
 
 def _surface(mesh: Mesh, vertices: Array, triangles: Triangles) -> trimesh.Trimesh:
@@ -139,15 +150,12 @@ def _aslant(directions: Array, most: float, rng: np.random.Generator) -> Array:
 
 
 def _poses(pairs: Pairs, hand: HandSize, rng: np.random.Generator) -> Array:
-    """Tool poses (n, 4, 4) in the middle of pairs, turned about the line between.
+    """Tool poses (n, 4, 4) in the middle of pairs, turned about their closing.
 
     The pads are long: the tool stands up to a third of a finger's width off.
     """
-    closing = pairs.second - pairs.first
-    closing /= np.linalg.norm(closing, axis=1, keepdims=True)
+    first, second, closing = pairs
     approach = np.cross(closing, rng.normal(size=closing.shape))
     approach /= np.linalg.norm(approach, axis=1, keepdims=True)
     off = hand.width / 3.0 * rng.uniform(-1.0, 1.0, (len(closing), 1))
-    return poses_from(
-        approach, closing, (pairs.first + pairs.second) / 2.0 + off * approach
-    )
+    return poses_from(approach, closing, (first + second) / 2.0 + off * approach)

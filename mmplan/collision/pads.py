@@ -21,11 +21,14 @@ _NEAR = 1.2e-3
 # Of several touching pieces those count that are this near to the nearest, m.
 _SAME_PLANE = 3e-4
 # A soft pad touches on a disc of this radius even where a hard one touches at a point,
-# m. Torsional friction of a disc that is pressed evenly: 2/3 of its radius.
+# m. If the disc is pressed evenly, friction acts at 2/3 of its radius: the corners of
+# its patch are so far from the middle.
 _SOFT_RADIUS = 0.005
-_DISC_ARM = 2.0 / 3.0
-# That of a line pressed evenly is a half of the mean distance of its ends.
-_PATCH_ARM = 0.5
+_SOFT = 2.0 / 3.0 * _SOFT_RADIUS / np.sqrt(2.0)
+# On which sides of the middle the four corners of a patch are, around it.
+_SIDES = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+# An axis of a patch is across its normal, by the cosine of their angle.
+_ACROSS = 0.5
 
 
 class _Patch(NamedTuple):
@@ -42,9 +45,8 @@ def contacts_of(
     """The contacts of k fingers in n grasps; NaN where a grasp does not touch (n,)."""
     shape = (len(touches), len(fingers))
     contacts = Contacts(
+        np.full((*shape, len(_SIDES), 3), np.nan),
         np.full((*shape, 3), np.nan),
-        np.full((*shape, 3), np.nan),
-        np.full(shape, np.nan),
     )
     for column, placed in enumerate(fingers):
         gaps = [thing.gaps(geometry, T) for geometry, T in placed]
@@ -60,17 +62,34 @@ def contacts_of(
 
 
 def _enter(contacts: Contacts, place: tuple[int, int], patches: list[_Patch]) -> None:
-    """Put the middle of all patches together into the contacts."""
+    """Put all patches together into the contacts."""
     nearest = min(patch.gap for patch in patches)
     flush = [patch for patch in patches if patch.gap <= nearest + _SAME_PLANE]
-    corners = np.concatenate([patch.corners for patch in flush])
     normal = np.sum([patch.normal for patch in flush], axis=0)
+    normal /= np.sqrt(normal @ normal)
+    contacts.normals[place] = normal
+    corners = np.concatenate([patch.corners for patch in flush])
+    contacts.corners[place] = _four_of(corners, normal)
+
+
+def _four_of(corners: Array, normal: Array) -> Array:
+    """Four (4, 3) of the corners (c, 3) of a patch.
+
+    Those farthest out between the two axes of the patch, the longer and the shorter,
+    and at least as far out as those of a soft pad.
+    """
     middle = corners.sum(axis=0) / len(corners)
     away = corners - middle
-    spread = np.sqrt((away * away).sum(axis=1)).sum() / len(corners)
-    contacts.points[place] = middle
-    contacts.normals[place] = normal / np.sqrt(normal @ normal)
-    contacts.arms[place] = max(_DISC_ARM * _SOFT_RADIUS, _PATCH_ARM * spread)
+    along = np.linalg.eigh(away.T @ away)[1][:, -1]
+    if abs(along @ normal) > _ACROSS:  # a point has no axes
+        along = np.eye(3)[np.argmin(np.abs(normal))]
+    along = along - (along @ normal) * normal
+    along /= np.sqrt(along @ along)
+    axes = np.array([along, np.cross(normal, along)])
+    flat = away @ axes.T
+    farthest = flat[np.argmax(_SIDES @ flat.T, axis=1)]
+    four: Array = middle + _SIDES * np.maximum(_SIDES * farthest, _SOFT) @ axes
+    return four
 
 
 def _patches(

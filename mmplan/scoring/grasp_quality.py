@@ -9,7 +9,7 @@ import pinocchio as pin
 
 from mmplan.collision import Closings, HandCloser
 from mmplan.grasps import GraspFamily
-from mmplan.grasps.contacts import Contacts, soft_finger_wrenches
+from mmplan.grasps.contacts import Contacts, contact_wrenches
 from mmplan.grasps.hand import HandSize
 from mmplan.grasps.wrench_space import WrenchSpace
 from mmplan.problem import Object, Problem, Task
@@ -63,8 +63,9 @@ class WrenchQuality:
 
     The measure, `epsilon` or `volume` of the wrench space about the centre of mass,
     torques in units of the object's size, is divided by that of two ideal pads as far
-    apart as the hand opens, which meet the object squarely through its centre of mass;
-    of the six-dimensional volume the sixth root is taken. Where the object's mass is
+    apart as the hand opens, which meet the object with all of their width and length,
+    squarely through its centre of mass; of the six-dimensional volume the sixth root is
+    taken. Where the object's mass is
     known, G also falls from a grasp that holds twice the weight to 0 for one that just
     holds it, at the hand's greatest force and in the worst orientation on the way from
     start to goal.
@@ -79,7 +80,7 @@ class WrenchQuality:
         self._centre, self._size = closer.centre_of_mass, closer.size
         self._weight = weight_wrenches(item, task, closer.force)
         space = WrenchSpace.of_wrenches(
-            soft_finger_wrenches(
+            contact_wrenches(
                 _ideal_contacts(closer.hand_size).about(np.zeros(3), self._size),
                 self._friction,
             ).reshape(-1, 6)
@@ -90,7 +91,7 @@ class WrenchQuality:
         """G in [0, 1], (n,); 0 where the hand does not close."""
         quality = np.zeros(len(hold.T_object_tool))
         contacts = self._closer.contacts(hold.T_object_tool, hold.closings)
-        wrenches = soft_finger_wrenches(
+        wrenches = contact_wrenches(
             contacts.about(self._centre, self._size), self._friction
         )
         for row in np.flatnonzero(contacts.complete):
@@ -140,9 +141,8 @@ def weight_wrenches(item: Object, task: Task, force: float) -> Array:
 
 
 def _ideal_contacts(hand: HandSize) -> Contacts:
-    half = hand.opening / 2.0
-    return Contacts(
-        points=np.array([[[half, 0.0, 0.0], [-half, 0.0, 0.0]]]),
-        normals=np.array([[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]]),
-        arms=np.full((1, 2), hand.reach / 4.0),
-    )
+    x, y, z = hand.opening / 2.0, hand.width / 2.0, hand.reach / 2.0
+    pad = np.array([[x, y, z], [x, -y, z], [x, -y, -z], [x, y, -z]])
+    corners = np.array([pad, pad * [-1.0, 1.0, 1.0]])
+    normals = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    return Contacts(corners[None], normals[None])

@@ -12,7 +12,7 @@ import trimesh
 from mmplan.collision import HandCloser, Scenery, antipodal_poses, hand_size
 from mmplan.collision.antipodal import antipodal_pairs
 from mmplan.collision.hand_size import hands_open_by
-from mmplan.grasps.contacts import soft_finger_wrenches
+from mmplan.grasps.contacts import contact_wrenches
 from mmplan.grasps.wrench_space import WrenchSpace
 from mmplan.problem import Object
 from mmplan.shapes import Array, Mesh
@@ -48,16 +48,21 @@ def surface(mesh: Mesh) -> trimesh.Trimesh:
 def test_pairs_lie_on_the_surface_in_both_friction_cones(egg: Mesh) -> None:
     thing, hand = surface(egg), hand_size(puma())
     rng = np.random.default_rng(0)
-    first, second = antipodal_pairs(thing, hand, FRICTION, 400, rng)
+    first, second, closing = antipodal_pairs(thing, hand, FRICTION, 400, rng)
     assert len(first) > 100
     between = second - first
     apart = np.linalg.norm(between, axis=1)
     assert np.all(apart <= hand.widest)
+    flush = []
     for points, inward in ((first, between), (second, -between)):
         distance, face = nearest_faces(thing, points)
         np.testing.assert_allclose(distance, 0.0, atol=1e-6)
         cosine = np.einsum("ni,ni->n", -thing.face_normals[face], inward) / apart
         assert np.all(cosine >= np.cos(CONE) - 1e-6)
+        # Flat pads across the closing direction are as aslant to both places.
+        flush.append(np.abs(np.einsum("ni,ni->n", thing.face_normals[face], closing)))
+    np.testing.assert_allclose(flush[0], flush[1], atol=1e-6)
+    assert np.all(flush[0] >= np.cos(CONE) - 1e-6)
 
 
 def nearest_faces(thing: trimesh.Trimesh, points: Array) -> tuple[Array, Array]:
@@ -75,7 +80,7 @@ def test_pairs_are_drawn_by_area() -> None:
     small.apply_translation([1.0, 0.0, 0.0])
     both = trimesh.util.concatenate([large, small])
     hand = hand_size(puma())
-    first, _ = antipodal_pairs(both, hand, 0.1, 4000, np.random.default_rng(0))
+    first, _, _ = antipodal_pairs(both, hand, 0.1, 4000, np.random.default_rng(0))
     share = np.mean(first[:, 0] > 0.5)
     # Through the flat sides only: the edges are too far apart for the hand.
     assert share == pytest.approx(0.15**2 / (0.15**2 + 0.3**2), abs=0.03)
@@ -88,7 +93,7 @@ def test_the_hand_closes_on_what_was_sampled_and_holds_it(egg: Mesh) -> None:
     closings = closer.close(T)
     assert closings.touches.mean() > 0.95
     contacts = closer.contacts(T, closings).about(closer.centre_of_mass, closer.size)
-    wrenches = soft_finger_wrenches(contacts, FRICTION).reshape(60, -1, 6)
+    wrenches = contact_wrenches(contacts, FRICTION).reshape(60, -1, 6)
     closes = [WrenchSpace.of_wrenches(w).closes for w in wrenches[contacts.complete]]
     assert np.mean(closes) > 0.9
 

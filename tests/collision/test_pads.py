@@ -12,7 +12,8 @@ from mmplan.problem import Object
 from mmplan.shapes import Array, Box, Cylinder, Revolve, Shape, Sphere
 from tests.honest import puma, shift
 
-SOFT = 2 / 3 * 0.005  # m, the arm of torsion of a pad that touches in a point
+# m, how far the corners of a pad are from the middle that touches in a point.
+SOFT = 2 / 3 * 0.005
 
 
 def contacts(shape: Shape, *T_object_tool: Array) -> Contacts:
@@ -33,8 +34,11 @@ def test_flat_pads_touch_a_box_in_the_middle_of_what_they_share() -> None:
     z = [(-0.05 + 0.015) / 2, (-0.05 - 0.015) / 2]
     expected = [[[0, y, h], [0, -y, h]] for h in z]
     np.testing.assert_allclose(found.points, expected, atol=2 * CONTACT_DISTANCE)
-    assert np.all(found.arms > SOFT)
-    assert np.all(found.arms[0] > found.arms[1])
+    # As wide as the fingers; as long as what they share.
+    for grasp, long in enumerate([0.05 + 0.015, 0.05 - 0.015]):
+        for corners in found.corners[grasp]:
+            sides = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1)
+            np.testing.assert_allclose(np.sort(sides), [0.018] * 2 + [long] * 2, 1e-2)
 
 
 def test_a_ball_is_touched_in_points() -> None:
@@ -42,7 +46,17 @@ def test_a_ball_is_touched_in_points() -> None:
     np.testing.assert_allclose(
         found.points[0], [[0, 0.02, 0], [0, -0.02, 0]], atol=2 * CONTACT_DISTANCE
     )
-    np.testing.assert_allclose(found.arms, SOFT)
+    away = np.linalg.norm(found.corners - found.points[:, :, None], axis=-1)
+    np.testing.assert_allclose(away, SOFT)
+
+
+def test_a_rod_is_touched_along_a_line() -> None:
+    """The fingers are level and the rod upright: as long as they are wide."""
+    level = np.array([[0, 0, 1, 0], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1.0]])
+    found = contacts(Cylinder(0.02, 0.3), level)
+    for corners in found.corners[0]:
+        spans = np.sort(np.ptp(corners, axis=0))
+        np.testing.assert_allclose(spans, [0, np.sqrt(2) * SOFT, 0.018], atol=2e-4)
 
 
 def test_pieces_of_one_surface_count_together() -> None:
