@@ -71,7 +71,13 @@ CONTENTS = {
         "docs/generation",
         "docs/limitations",
     ),
-    "Describe": ("docs/formats", "docs/plan_format", "docs/robots", "docs/grasps"),
+    "Describe": (
+        "docs/formats",
+        "docs/carrying",
+        "docs/plan_format",
+        "docs/robots",
+        "docs/grasps",
+    ),
     "Program": ("docs/python", "docs/extending", "examples/README"),
     "Judge": ("docs/benchmarks", "Measured <benchmarks/README>", "CHANGELOG"),
 }

@@ -21,7 +21,12 @@ from mmplan.plan_file import (
     read_plan_file,
 )
 from mmplan.shapes import Array, read_only
-from mmplan.verification_report import Clearance, Fault, VerificationReport
+from mmplan.verification_report import (
+    Clearance,
+    Fault,
+    Peak,
+    VerificationReport,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -231,4 +236,5 @@ def _report(report: ReportFile) -> VerificationReport:
         proven=report.proven,
         queries=report.queries,
         intervals=report.intervals,
+        peaks=tuple(Peak(**peak.model_dump()) for peak in report.peaks),
     )

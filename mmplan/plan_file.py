@@ -145,6 +145,22 @@ class ClearanceFile(_Model):
     second: str
 
 
+class PeakFile(_Model):
+    """The largest value of what a rule of carrying limits."""
+
+    rule: str
+    """tilt (rad) or tool_speed (m/s)."""
+    limit: Number
+    largest: Number
+    proven: Number | None
+    """Never exceeded; null where the limit is not kept."""
+    task: Annotated[int, Field(ge=0)]
+    """Index into tasks."""
+    segment: str
+    time: Number
+    """Seconds from the segment's start."""
+
+
 class ReportFile(_Model):
     """What the verification found."""
 
@@ -157,6 +173,8 @@ class ReportFile(_Model):
     """Exact distance computations."""
     intervals: Annotated[int, Field(ge=0)]
     """Stretches of time looked at."""
+    peaks: list[PeakFile] = []
+    """Of every rule of carrying of every task, in their order."""
 
 
 class PlanFile(_Model):

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mmplan.carry import Carry
+
 if TYPE_CHECKING:
     from mmplan.grasps import GraspFamily
     from mmplan.robot import Robot
@@ -51,7 +53,8 @@ class Task:
     `retreat` along the tool's z, `lift` and `lower` along the world's z. None leaves
     the length to the planner, which starts at its default, shortens where the scene is
     too narrow, and leaves the motion out if nothing else helps; a number is kept to the
-    letter, 0 leaves the motion out.
+    letter, 0 leaves the motion out. `carry` says what holds from the grasp to the
+    release.
     """
 
     object: str
@@ -60,6 +63,7 @@ class Task:
     lift: float | None = None
     lower: float | None = None
     retreat: float | None = None
+    carry: Carry = field(default_factory=Carry)
 
 
 @dataclass(frozen=True, eq=False)

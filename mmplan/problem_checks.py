@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from mmplan.carry import Upright
 from mmplan.collision import (
     TOUCH_TOLERANCE,
     CollisionWorld,
     Scenery,
+    depth_in_region,
     overlaps,
     solids_of_obstacle,
 )
@@ -35,6 +37,7 @@ def check_geometry(problem: Problem, document: Document) -> None:
         *_zone_faults(problem),
         *_start_faults(problem, world),
         *_object_faults(problem, world),
+        *_carry_faults(problem, world.scenery),
     ]
     if faults:
         raise document.error(faults)
@@ -88,6 +91,35 @@ def _object_faults(problem: Problem, world: CollisionWorld) -> Iterator[Fault]:
         yield from _overlaps(
             world.scenery, task.object, standing, ("tasks", number, "to")
         )
+
+
+def _carry_faults(problem: Problem, scenery: Scenery) -> Iterator[Fault]:
+    """Rules of carrying that an object breaks already where a task begins or ends."""
+    standing = {item.name: item.T_world_object for item in problem.objects}
+    for number, task in enumerate(problem.tasks):
+        ends = {"start": standing[task.object], "goal": task.T_world_goal}
+        for end, T_world_object in ends.items():
+            where: KeyPath = ("tasks", number, "carry")
+            what = f"at its {end} {task.object} is"
+            yield from _upright_faults(task.carry.upright, T_world_object, what, where)
+            for place, region in enumerate(task.carry.forbidden):
+                depth = depth_in_region(scenery, task.object, T_world_object, region)
+                if depth > 0.0:
+                    message = f"{what} {depth * _MILLIMETRES:.1f} mm deep in this box"
+                    yield Fault((*where, "forbidden", place), message)
+        standing[task.object] = task.T_world_goal
+
+
+def _upright_faults(
+    upright: Upright | None, T_world_object: Array, what: str, where: KeyPath
+) -> Iterator[Fault]:
+    if upright is None or upright.depths(T_world_object[None, :3, 3])[0] >= 0.0:
+        return
+    tilt = float(upright.tilts(T_world_object[None, :3, :3])[0])
+    if tilt > upright.angle:
+        message = f"{what} tilted by {tilt:.4g} rad, and at most {upright.angle:g} are "
+        message += "allowed; name the axis that points up, or regions in which it need "
+        yield Fault((*where, "upright"), f"{message}not")
 
 
 def _overlaps(

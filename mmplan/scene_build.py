@@ -7,8 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from mmplan.carry import Carry, Region, Upright
 from mmplan.collision import Scenery
 from mmplan.exceptions import InputError
+from mmplan.files.carry_sections import CarrySection, RegionSection, UprightSection
 from mmplan.files.document import Fault
 from mmplan.files.robot_composition import pose_of
 from mmplan.files.scene_sections import (
@@ -157,6 +159,33 @@ def _grasps(scene: SceneFile, item: Object, robot: Robot) -> dict[str, GraspFami
 
 def _tasks(section: SceneSection) -> tuple[Task, ...]:
     return tuple(
-        Task(t.move, pose(t.to), t.approach, t.lift, t.lower, t.retreat)
+        Task(
+            t.move, pose(t.to), t.approach, t.lift, t.lower, t.retreat, _carry(t.carry)
+        )
         for t in section.tasks
+    )
+
+
+def _carry(section: CarrySection) -> Carry:
+    upright = section.upright_keys
+    return Carry(
+        upright=None if upright is None else _upright(upright),
+        max_speed=section.max_speed,
+        forbidden=_regions("forbidden region", section.forbidden),
+    )
+
+
+def _upright(section: UprightSection) -> Upright:
+    axis = np.array(section.axis)
+    return Upright(
+        angle=section.angle,
+        axis=read_only(axis / np.linalg.norm(axis)),
+        exempt=_regions("exempt region", section.outside),
+    )
+
+
+def _regions(name: str, sections: Sequence[RegionSection]) -> tuple[Region, ...]:
+    return tuple(
+        Region(f"{name} {number}", section.box, pose(section.at))
+        for number, section in enumerate(sections, start=1)
     )

@@ -14,7 +14,7 @@ from rich.table import Table
 
 if TYPE_CHECKING:
     from mmplan.plan import Plan, TaskPlan
-    from mmplan.verification_report import VerificationReport
+    from mmplan.verification_report import Peak, VerificationReport
 
 
 _UNBOUND = 10_000  # columns, more than any table has
@@ -81,14 +81,26 @@ def plan_tables(plan: Plan, output: Path | None) -> list[Table | str]:
 
 
 def verification_table(plan: Plan, report: VerificationReport) -> str:
-    """The proof in a line or two."""
+    """The proof in a few lines."""
     text = f"verified: {plan.duration:.2f} s of motion, free of collision at all times"
-    if report.clearance is None:
-        return text
     c = report.clearance
+    if c is not None:
+        text += (
+            f"\nsmallest clearance {c.distance * 1000:.2f} mm: "
+            f"{c.first} / {c.second}, {c.segment} at {c.time:.2f} s"
+        )
+    return "\n".join([text, *(_peak(plan, peak) for peak in report.peaks)])
+
+
+def _peak(plan: Plan, peak: Peak) -> str:
+    what, unit = {"tilt": ("tilt", "rad"), "tool_speed": ("speed of the tool", "m/s")}[
+        peak.rule
+    ]
+    proven = "" if peak.proven is None else f", proven below {peak.proven:.4f}"
     return (
-        f"{text}\nsmallest clearance {c.distance * 1000:.2f} mm: "
-        f"{c.first} / {c.second}, {c.segment} at {c.time:.2f} s"
+        f"largest {what} while {plan.tasks[peak.task].object} is carried: "
+        f"{peak.largest:.4f} {unit}{proven} (at most {peak.limit:g} allowed), "
+        f"{peak.segment} at {peak.time:.2f} s"
     )
 
 

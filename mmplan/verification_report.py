@@ -35,13 +35,30 @@ class Clearance:
 
 
 @dataclass(frozen=True)
+class Peak:
+    """The largest value of something that a rule limits while an object is carried.
+
+    `largest` was measured at the time that it tells; `proven` is what it never exceeds,
+    None where the limit is not kept.
+    """
+
+    rule: str  # "tilt" (rad), where it counts, or "tool_speed" (m/s)
+    limit: float
+    largest: float
+    proven: float | None
+    task: int  # place of the task in the plan, from 0
+    segment: str
+    time: float  # s from the segment's start
+
+
+@dataclass(frozen=True)
 class VerificationReport:
     """The outcome of a verification; the same for the same plan and problem.
 
     `clearance` was measured at the time that it tells; nothing that must stay apart
     ever comes nearer than `proven` (m), which is 0 where there are faults. `queries`
     counts exact distance computations and `intervals` the stretches of time that
-    the proof looked at.
+    the proof looked at. `peaks` has a peak for each rule of carrying of each task.
     """
 
     faults: tuple[Fault, ...]
@@ -49,6 +66,7 @@ class VerificationReport:
     proven: float
     queries: int
     intervals: int
+    peaks: tuple[Peak, ...] = ()
 
     @property
     def ok(self) -> bool:
@@ -65,4 +83,5 @@ class VerificationReport:
             "proven": self.proven,
             "queries": self.queries,
             "intervals": self.intervals,
+            "peaks": [vars(peak) for peak in self.peaks],
         }

@@ -7,6 +7,7 @@ from mmplan.collision.closing import Closings, HandCloser
 from mmplan.collision.distances import LinkDistances
 from mmplan.collision.hand_size import hand_size
 from mmplan.collision.hand_widths import hand_widths
+from mmplan.collision.regions import depth_in_region
 from mmplan.collision.requests import make_exact
 from mmplan.collision.scenery import Scenery
 from mmplan.collision.solids import solids_of_obstacle
@@ -35,6 +36,7 @@ __all__ = [
     "TouchRules",
     "antipodal_poses",
     "clearances",
+    "depth_in_region",
     "hand_size",
     "hand_widths",
     "local_bounds",

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
+from mmplan.carry import Region
 from mmplan.collision.bounds import local_bounds, touching_depth
+from mmplan.collision.regions import solid_of_region
 from mmplan.collision.scenery import Scenery
 from mmplan.collision.solids import Solid
 from mmplan.robot import Robot
@@ -20,7 +22,7 @@ class Body(NamedTuple):
     """One convex body of a geometry model."""
 
     owner: str  # the link, obstacle (or fixture/link) or object it belongs to
-    kind: str  # "base", "arm", "finger", "ground", "obstacle", "standing", "attached"
+    kind: str  # base, arm, finger, ground, obstacle, standing, attached or region
     joint: int  # the joint that moves it, 0 for none
 
 
@@ -60,11 +62,13 @@ def assemble(
     touch: TouchRules,
     pair_filter: Callable[[Body, Body], bool] | None,
     clearance: Clearance,
+    regions: Sequence[Region] = (),
 ) -> Assembly:
     """Put the world together; see `CollisionWorld` for which pairs are checked.
 
     Where there is a `pair_filter`, only the pairs that it accepts are. Pairs with the
-    scene and with what is carried must keep the `clearance`.
+    scene and with what is carried must keep the `clearance`. What is carried must keep
+    out of the `regions`.
     """
     geometry = robot.geometry.clone()
     bodies = [
@@ -74,6 +78,8 @@ def assemble(
     for solid in scenery.obstacles:
         kind = "ground" if scenery.is_ground(solid.owner) else "obstacle"
         _add(geometry, bodies, solid, kind, 0, np.eye(4))
+    for region in regions:
+        _add(geometry, bodies, solid_of_region(region), "region", 0, np.eye(4))
     for name, T_world_object in standing.items():
         for solid in scenery.objects[name]:
             _add(geometry, bodies, solid, "standing", 0, T_world_object)
@@ -119,12 +125,15 @@ def _own_pairs(robot: Robot) -> list[tuple[int, int]]:
 
 
 def _scene_pairs(bodies: list[Body], touch: TouchRules) -> list[tuple[int, int]]:
-    """Pairs of the moving bodies with the scene's, and of carried with the robot's."""
+    """Pairs of the moving bodies with the scene's, and of carried with the robot's.
+
+    Regions are there for what is carried alone, which comes last.
+    """
     moving = ("base", "arm", "finger", "attached")
     return [
         (i, j)
         for j, scene in enumerate(bodies)
-        if scene.kind not in moving[:3]
+        if scene.kind not in (*moving[:3], "region")
         for i, mover in enumerate(bodies[:j])
         if mover.kind in moving or scene.kind == "attached"
         if mover.joint != scene.joint and not _may_touch(mover, scene, touch)

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
+from mmplan.carry import Region
 from mmplan.collision.assembly import Assembly, Body, Clearance, TouchRules, assemble
 from mmplan.collision.checker import Checker
 from mmplan.collision.scenery import Scenery
@@ -41,7 +42,7 @@ class CollisionWorld:
     Every pair of bodies that do not move rigidly together must stay apart, except the
     robot's own disabled pairs, base and ground, obstacles among themselves, the finger
     links and an object that they may touch, and, down to a stated depth, an object
-    and what it stands on.
+    and what it stands on. What is carried must keep out of the `regions` as well.
     """
 
     robot: Robot
@@ -51,6 +52,7 @@ class CollisionWorld:
     touch: TouchRules = field(default_factory=TouchRules)
     pair_filter: Callable[[Body, Body], bool] | None = None
     clearance: Clearance = field(default_factory=Clearance)
+    regions: tuple[Region, ...] = ()
 
     @classmethod
     def of_problem(cls, problem: Problem) -> CollisionWorld:
@@ -73,6 +75,10 @@ class CollisionWorld:
         standing = {k: v for k, v in self.standing.items() if k != name}
         world = replace(self.forbid_touch(name), attached=attached, standing=standing)
         return world.permit_touch(name, fingers=True)
+
+    def forbidding(self, regions: tuple[Region, ...]) -> CollisionWorld:
+        """The world in which what is carried must keep out of some regions."""
+        return replace(self, regions=regions) if regions else self
 
     def without(self, name: str) -> CollisionWorld:
         """The world with an object taken out of it."""
@@ -216,6 +222,7 @@ class CollisionWorld:
             self.touch,
             self.pair_filter,
             self.clearance,
+            self.regions,
         )
 
     @cached_property

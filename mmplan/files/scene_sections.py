@@ -8,6 +8,7 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 from typing_extensions import Self
 
+from mmplan.files.carry_sections import CarrySection
 from mmplan.files.free_grasp_sections import FileSection
 from mmplan.files.grasp_sections import GraspSection
 from mmplan.files.pose_section import PoseSection
@@ -185,6 +186,8 @@ class TaskSection(Section):
     """Straight way down with the object before the release, m; 0: none."""
     retreat: Distance | None = None
     """Straight way of the tool back along its z after the release, m; 0: none."""
+    carry: CarrySection = CarrySection()
+    """What holds while the object is in the hand."""
 
 
 def _not_empty(tasks: tuple[TaskSection, ...]) -> tuple[TaskSection, ...]:

@@ -8,8 +8,9 @@ import numpy as np
 
 from mmplan.candidate import Candidate
 from mmplan.collision import TOUCH_TOLERANCE, CollisionWorld, supports
+from mmplan.motion.carrying import kept_upright
 from mmplan.motion.parts import BlockedError, Part
-from mmplan.planning import hand_motion, straight_motion
+from mmplan.planning import UprightWorld, hand_motion, straight_motion
 from mmplan.problem import Problem, Task
 from mmplan.scoring import End
 from mmplan.shapes import Array
@@ -47,7 +48,7 @@ class ShortMotions:
         approach = self._straight("approach", self.world, q_open, back)[::-1]
         touching = self.world.permit_touch(self.task.object, fingers=True)
         grasp = self._hand("grasp", touching, q_open, candidate.closed)
-        leaving = self.resting(carrying, self.world.standing[self.task.object])
+        leaving = self._ruled(carrying, self.world.standing[self.task.object], q_closed)
         lift = self._straight("lift", leaving, q_closed, _UP)
         return [
             Part("approach", self.world, (approach,)),
@@ -63,7 +64,7 @@ class ShortMotions:
         """
         q_closed = candidate.q[End.GOAL]
         q_open = self._with_hand(q_closed, candidate.opened)
-        arriving = self.resting(carrying, self.task.T_world_goal)
+        arriving = self._ruled(carrying, self.task.T_world_goal, q_closed)
         lower = self._straight("lower", arriving, q_closed, _UP)[::-1]
         placed = self.world.place(self.task.object, self.task.T_world_goal)
         touching = placed.permit_touch(self.task.object, fingers=True)
@@ -84,8 +85,19 @@ class ShortMotions:
         )
         return world.permit_touch(name, supports=touched)
 
+    def _ruled(
+        self, carrying: CollisionWorld, T_world_object: Array, q: Array
+    ) -> CollisionWorld | UprightWorld:
+        """The world of a lift or lower that has an end at q (nq,), object at a pose."""
+        resting = self.resting(carrying, T_world_object)
+        return kept_upright(resting, self.problem, self.task, carrying.attached, q)
+
     def _straight(
-        self, name: str, world: CollisionWorld, q: Array, direction: Array
+        self,
+        name: str,
+        world: CollisionWorld | UprightWorld,
+        q: Array,
+        direction: Array,
     ) -> Array:
         """A straight tool motion (n, nq) from q, as long as the task wants it."""
         wanted: float | None = getattr(self.task, name)

@@ -10,12 +10,13 @@ import numpy as np
 from mmplan.candidate import Candidate
 from mmplan.collision import CollisionWorld
 from mmplan.ik.windings import windings
+from mmplan.motion.carrying import kept_upright
 from mmplan.motion.parts import Blocked, BlockedError, Part, time_part
 from mmplan.motion.short_motions import ShortMotions
 from mmplan.motion.ways import WayFinder
 from mmplan.motion.zoned_world import with_zones
 from mmplan.plan import Segment
-from mmplan.planning import motion_limits
+from mmplan.planning import PathLimit, ToolSpeed, motion_limits
 from mmplan.problem import Problem, Task
 from mmplan.shapes import Array
 
@@ -41,7 +42,7 @@ class TaskMotion:
 
     def blocked_short(self, candidate: Candidate) -> Blocked | None:
         """What stands in the way of the short motions alone, no path being planned."""
-        carrying = self.world.attach(self.task.object, candidate.T_tool_object)
+        carrying = self._carrying(candidate)
         try:
             self._short.pick(candidate, carrying)
             self._short.place(candidate, carrying)
@@ -53,9 +54,14 @@ class TaskMotion:
     def _short(self) -> ShortMotions:
         return ShortMotions(self.problem, self.task, self.world, self.without_lines)
 
+    def _carrying(self, candidate: Candidate) -> CollisionWorld:
+        """The world with the object in the hand."""
+        world = self.world.attach(self.task.object, candidate.T_tool_object)
+        return world.forbidding(self.task.carry.forbidden)
+
     def _parts(self, candidate: Candidate, rng: np.random.Generator) -> list[Part]:
         """All segments in order, planned the short ones first, as they fail soonest."""
-        carrying = self.world.attach(self.task.object, candidate.T_tool_object)
+        carrying = self._carrying(candidate)
         pick = self._short.pick(candidate, carrying)
         place = self._short.place(candidate, carrying)
         transit, pick = self._transit(pick, rng)
@@ -103,19 +109,29 @@ class TaskMotion:
         q_goals = parts[0].path[0] + turns
         keeping = world.keeping(self.problem.planner.clearance, q_start, *q_goals)
         zoned = with_zones(keeping, self.problem, q_start, q_goals[0])
-        finder = WayFinder(self.problem, name, zoned, hand=not world.attached)
+        ruled = kept_upright(
+            zoned, self.problem, self.task, world.attached, q_start, *q_goals
+        )
+        finder = WayFinder(self.problem, name, ruled, hand=not world.attached)
         way = finder.find(q_start, q_goals, rng)
         turn = turns[way.goal] + way.turns
-        part = Part(name, zoned, way.legs, dict(world.attached))
+        part = Part(name, ruled, way.legs, dict(world.attached))
         return part, [part.turned(turn) for part in parts]
 
     def _timed(self, part: Part) -> Segment:
         """The segment of a part, as fast as the robot's limits allow."""
-        limits = motion_limits(self.problem.robot)
+        limits = motion_limits(self.problem.robot, self._more_limits(part))
         motion = time_part(part, limits, self.problem.planner.resolution)
         return Segment(
             part.name, motion.times, motion.positions, motion.velocities, part.attached
         )
+
+    def _more_limits(self, part: Part) -> tuple[PathLimit, ...]:
+        """What limits a part beside the robot's joints."""
+        max_speed = self.task.carry.max_speed
+        if max_speed is None or not part.attached:
+            return ()
+        return (ToolSpeed(self.problem.robot, max_speed),)
 
     def _turns(self, parts: list[Part]) -> Array:
         """Whole turns of the arm's joints (m, nq) that keep all parts within limits."""

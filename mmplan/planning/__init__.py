@@ -11,6 +11,7 @@ from mmplan.planning.joints import (
     transfer_joints,
     transit_joints,
 )
+from mmplan.planning.path_limit import PathLimit
 from mmplan.planning.paths import PathOutcome, PathResult, plan_path
 from mmplan.planning.planners import available_planners, require_planner
 from mmplan.planning.reeds_shepp import ReedsShepp
@@ -23,6 +24,8 @@ from mmplan.planning.timing import (
     joined,
     time_path,
 )
+from mmplan.planning.tool_speed import ToolSpeed
+from mmplan.planning.upright import UprightRule, UprightWorld
 from mmplan.planning.world import PlanningWorld
 
 __all__ = [
@@ -30,6 +33,7 @@ __all__ = [
     "MotionLimits",
     "MovingJoints",
     "PathChecker",
+    "PathLimit",
     "PathOutcome",
     "PathResult",
     "PlanningWorld",
@@ -39,7 +43,10 @@ __all__ = [
     "TimedPath",
     "TimingResult",
     "TimingSettings",
+    "ToolSpeed",
     "TurnInPlace",
+    "UprightRule",
+    "UprightWorld",
     "available_planners",
     "hand_motion",
     "joined",

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from mmplan.planning.path_limit import PathLimit
 from mmplan.problem import Problem
 from mmplan.robot import Follower, JointGroup, Robot
 from mmplan.shapes import Array, read_only
@@ -68,12 +69,16 @@ class MovingJoints:
 
 @dataclass(frozen=True, eq=False)
 class MotionLimits:
-    """How fast and how far the joints may move, in the order of q."""
+    """How fast and how far the joints may move, in the order of q.
+
+    `more` are limits that are not those of single joints.
+    """
 
     velocity: Array  # (nq,), m/s or rad/s
     acceleration: Array  # (nq,), m/s^2 or rad/s^2
     lower: Array | float = -np.inf  # (nq,), m or rad
     upper: Array | float = np.inf
+    more: tuple[PathLimit, ...] = ()
 
 
 def transit_joints(problem: Problem) -> MovingJoints:
@@ -91,8 +96,8 @@ def standing_joints(problem: Problem, *, hand: bool) -> MovingJoints:
     return _moving_joints(problem, base=False, hand=hand)
 
 
-def motion_limits(robot: Robot) -> MotionLimits:
-    """The robot's own limits."""
+def motion_limits(robot: Robot, more: tuple[PathLimit, ...] = ()) -> MotionLimits:
+    """The robot's own limits, and more."""
     limits = np.full((4, robot.model.nq), np.inf)
     limits[2] = -np.inf
     for group in (robot.base, robot.arm, robot.hand):
@@ -102,7 +107,8 @@ def motion_limits(robot: Robot) -> MotionLimits:
             group.lower,
             group.upper,
         )
-    return MotionLimits(*(read_only(row) for row in limits))
+    velocity, acceleration, lower, upper = (read_only(row) for row in limits)
+    return MotionLimits(velocity, acceleration, lower, upper, more)
 
 
 def _moving_joints(problem: Problem, *, base: bool, hand: bool) -> MovingJoints:

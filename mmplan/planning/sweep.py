@@ -10,6 +10,7 @@ import numpy as np
 import pinocchio as pin
 
 from mmplan.collision.bounds import local_bounds
+from mmplan.planning.upright import UprightWorld
 from mmplan.planning.world import PlanningWorld
 from mmplan.shapes import Array, read_only
 
@@ -27,6 +28,7 @@ class Sweep:
     """
 
     reach: Array  # (bodies, nq)
+    rules: Array  # (rules, nq), the same for what rules beside collisions look at
 
     @cached_property
     def weights(self) -> Array:
@@ -35,8 +37,12 @@ class Sweep:
 
     def distance(self, dq: Array) -> Array:
         """A bound on the way (m) of any point, (...,), for joint moves (..., nq)."""
-        ways: Array = (np.abs(dq) @ self.reach.T).max(axis=-1)
+        ways: Array = (np.abs(dq) @ self._every.T).max(axis=-1)
         return ways
+
+    @cached_property
+    def _every(self) -> Array:
+        return np.vstack([self.reach, self.rules])
 
 
 def sweep_of(world: PlanningWorld) -> Sweep:
@@ -56,7 +62,22 @@ def sweep_of(world: PlanningWorld) -> Sweep:
             corners[joint] = np.vstack([known, _corners(body)])
     axes = _axes(model)
     rows = [_lever_arms(model, axes, joint, c) for joint, c in corners.items()]
-    return Sweep(read_only(_undominated(np.array(rows).reshape(-1, model.nq))))
+    return Sweep(
+        read_only(_undominated(np.array(rows).reshape(-1, model.nq))),
+        read_only(_rule_rows(world, axes)),
+    )
+
+
+def _rule_rows(world: PlanningWorld, axes: Array) -> Array:
+    """How far joints move a carried object's origin and turn it, (0 or 2, nq)."""
+    if not isinstance(world, UprightWorld):
+        return np.zeros((0, world.model.nq))
+    model, rule = world.model, world.rule
+    joint = rule.robot.tool_joint
+    turns = np.zeros(model.nq)
+    for moved in list(model.supports[joint])[1:]:
+        turns[model.joints[moved].idx_q] = axes[moved, 3:].any() / rule.turn_per_metre
+    return np.array([_lever_arms(model, axes, joint, rule.origin[None]), turns])
 
 
 def _corners(body: pin.GeometryObject) -> Array:

@@ -213,7 +213,11 @@ def _within(motion: TimedPath, limits: MotionLimits) -> TimedPath:
     hardest = motion.curve.acceleration_extremes().magnitude
     velocity = float((motion.fastest() / limits.velocity).max())
     acceleration = float((hardest / limits.acceleration).max())
-    return motion.stretched(SLACK * max(velocity, np.sqrt(acceleration)))
+    more = [limit.stretch(motion.curve) for limit in limits.more]
+    factor = SLACK * max(velocity, np.sqrt(acceleration), *more)
+    if not np.isfinite(factor):
+        raise ArithmeticError("the robot cannot move along a path however slowly")
+    return motion.stretched(factor)
 
 
 def joined(motions: Sequence[TimedPath]) -> TimedPath:

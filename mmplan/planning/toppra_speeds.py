@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from mmplan.planning.curve import Curve
 from mmplan.planning.joints import MotionLimits
+from mmplan.planning.path_limit import PathLimit
 from mmplan.shapes import Array
 
 # The solver gives up where its numbers differ too much in size, as with a slow torso
@@ -55,6 +56,7 @@ def _speeds(
         ),
     ]
     path = _MovingPart(curve, moving, scale)
+    constraints += [_path_limit(path, limit) for limit in limits.more]
     method = toppra.algorithm.TOPPRA(
         constraints, path, scale * grid, solver_wrapper="seidel"
     )
@@ -75,8 +77,30 @@ class _MovingPart:
         self.path_interval = np.array([0.0, scale * curve.length])
 
     def __call__(self, s: Array, order: int = 0) -> Array:
-        moved = self._curve(s / self._scale, order)[:, self._moving]
-        return moved / self._scale**order
+        return self.whole(s, order)[:, self._moving]
+
+    def whole(self, s: Array, order: int = 0) -> Array:
+        """All joints (n, nq), those that do not move among them."""
+        return self._curve(s / self._scale, order) / self._scale**order
+
+
+def _path_limit(path: _MovingPart, limit: PathLimit) -> object:
+    """A limit as toppra takes it, at both ends of each step."""
+    toppra = _toppra()
+
+    class Limit(toppra.constraint.LinearConstraint):  # type: ignore[name-defined]
+        def compute_constraint_params(self, _path: object, grid: Array) -> object:
+            rows = limit.rows(*(path.whole(grid, order) for order in range(3)))
+            one = np.eye(rows.a.shape[1])
+            both, most = np.vstack([one, -one]), np.ones(2 * len(one))
+            return interpolated(*rows, both, most, None, None, grid, identical=True)
+
+    interpolated = toppra.constraint.canlinear_colloc_to_interpolate
+    made = Limit()
+    made.dof = path.dof
+    made.identical = True
+    made.set_discretization_type(toppra.constraint.DiscretizationType.Interpolation)
+    return made
 
 
 def _both_ways(limits: Array) -> Array:

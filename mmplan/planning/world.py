@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
@@ -49,7 +49,16 @@ class PlanningWorld(Protocol):
         """What overlaps at one configuration (nq,), worst first."""
 
 
+@runtime_checkable
+class RuledWorld(PlanningWorld, Protocol):
+    """A world with rules beside the one that nothing may touch."""
+
+    def broken_rules(self, q: Array) -> Sequence[str]:
+        """The rules that are broken at one configuration (nq,), in words."""
+
+
 def contact_names(world: PlanningWorld, q: Array) -> str:
     """`forearm touches counter, hand touches wineglass` at one configuration (nq,)."""
+    broken = world.broken_rules(q) if isinstance(world, RuledWorld) else ()
     touches = [f"{c.first} touches {c.second}" for c in world.contacts(q)]
-    return ", ".join(touches) or "in collision"
+    return ", ".join([*broken, *touches]) or "in collision"

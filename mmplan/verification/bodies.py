@@ -47,7 +47,8 @@ class Bodies:
         self.levers = np.zeros((len(self), self._model.nq))
         for joint in np.unique(self.joints).tolist():
             moved = np.flatnonzero(self.joints == joint)
-            self.levers[moved] = self._levers(joint, moved, travel)
+            corners = self._corners(moved)
+            self.levers[moved] = point_levers(self._model, joint, corners, travel)
 
     def __len__(self) -> int:
         """The number of bodies."""
@@ -104,26 +105,26 @@ class Bodies:
         corners: Array = points @ T[:, :3, :3].transpose(0, 2, 1) + T[:, None, :3, 3]
         return corners
 
-    def _levers(self, joint: int, body: Indices, travel: Array) -> Array:
-        """The levers (k, nq) of bodies of one joint, from there towards the world.
 
-        `points` (k or 1, p, 3) are carried by `joint` and given in its frame. Of the
-        bodies, a joint further up knows only that they lie in balls of `radius` (k,)
-        around its child joint.
-        """
-        levers = np.zeros((len(body), self._model.nq))
-        points, radius = self._corners(body), np.zeros(len(body))
-        while joint > 0:
-            index = self._model.joints[joint].idx_q
-            linear, angular = np.split(motion_axis(self._model, joint), 2)
-            prismatic = bool(np.any(linear))
-            away = np.linalg.norm(np.cross(points, angular), axis=2).max(axis=1)
-            levers[:, index] = 1.0 if prismatic else away + radius
-            radius = radius + np.linalg.norm(points, axis=2).max(axis=1)
-            radius += travel[index] if prismatic else 0.0
-            points = self._model.jointPlacements[joint].translation[None, None]
-            joint = int(self._model.parents[joint])
-        return levers
+def point_levers(model: pin.Model, joint: int, points: Array, travel: Array) -> Array:
+    """Levers (k, nq), as those of `Bodies`, of k sets of points (k, p, 3) of a joint.
+
+    Goes from there towards the world. Of the points, a joint further up knows only that
+    they lie in balls of `radius` (k,) around its child joint.
+    """
+    levers = np.zeros((len(points), model.nq))
+    radius = np.zeros(len(points))
+    while joint > 0:
+        index = model.joints[joint].idx_q
+        linear, angular = np.split(motion_axis(model, joint), 2)
+        prismatic = bool(np.any(linear))
+        away = np.linalg.norm(np.cross(points, angular), axis=2).max(axis=1)
+        levers[:, index] = 1.0 if prismatic else away + radius
+        radius = radius + np.linalg.norm(points, axis=2).max(axis=1)
+        radius += travel[index] if prismatic else 0.0
+        points = model.jointPlacements[joint].translation[None, None]
+        joint = int(model.parents[joint])
+    return levers
 
 
 def _supports(model: pin.Model) -> Mask:

@@ -20,6 +20,7 @@ class Finding:
     time: float  # s, within the segment
     distance: float  # m, negative where they overlap
     allowed: float  # m
+    region: bool = False  # whether one is a region that is forbidden, and no thing
 
 
 @dataclass

@@ -210,6 +210,7 @@ class SegmentProof:
 
     def _finding(self, pairs: _Open, margins: _Margins, k: int) -> Finding:
         owners, pair = self._bodies.owners, pairs.pair[k]
+        kinds = {self._bodies.kinds[i] for i in (self._first[pair], self._second[pair])}
         return Finding(
             stage=self._stage,
             first=owners[self._first[pair]],
@@ -217,4 +218,5 @@ class SegmentProof:
             time=pairs.middle_of(int(pairs.stretch[k])),
             distance=float(margins.distance[k]),
             allowed=float(margins.allowed_now[k]),
+            region="region" in kinds,
         )

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypeAlias
 
 import numpy as np
 
+from mmplan.carry import Region
 from mmplan.collision import CollisionWorld
 from mmplan.exceptions import VerificationError
 from mmplan.plan import Plan
@@ -14,6 +16,7 @@ from mmplan.replay import Stage, replay
 from mmplan.shapes import Array
 from mmplan.verification.base import base_faults
 from mmplan.verification.bodies import Bodies
+from mmplan.verification.carry_rules import carrying_peaks
 from mmplan.verification.carrying import carrying_faults, grasp_faults
 from mmplan.verification.ledger import Finding, Ledger
 from mmplan.verification.limits import curve_of, motion_faults
@@ -51,7 +54,8 @@ def examine(plan: Plan, problem: Problem) -> VerificationReport:
     if faults:
         return VerificationReport(tuple(faults), None, 0.0, 0, 0)
     stages = list(replay(problem, plan.tasks))
-    worlds = _Worlds(problem, _travel(stages))
+    travel = _travel(stages)
+    worlds = _Worlds(problem, travel)
     ledger = Ledger()
     for number, stage in enumerate(stages):
         bodies = worlds.bodies_of(stage)
@@ -59,11 +63,13 @@ def examine(plan: Plan, problem: Problem) -> VerificationReport:
         SegmentProof(number, curve_of(stage), bodies, rule, ledger).run()
         if _begins_to_carry(stages, number):
             faults.extend(grasp_faults(stage, bodies))
+    peaks, rule_faults = carrying_peaks(stages, problem, travel)
     faults = [
         *_proof_faults(ledger, stages),
         *motion_faults(stages, problem),
         *base_faults(stages, problem),
         *carrying_faults(stages, problem),
+        *rule_faults,
         *faults,
     ]
     return VerificationReport(
@@ -72,7 +78,12 @@ def examine(plan: Plan, problem: Problem) -> VerificationReport:
         proven=_proven(ledger),
         queries=ledger.queries,
         intervals=ledger.intervals,
+        peaks=peaks,
     )
+
+
+# Regions that are forbidden, and the poses of all objects, standing and carried.
+_State: TypeAlias = tuple[tuple[Region, ...], tuple[tuple[str, bytes], ...]]
 
 
 class _Worlds:
@@ -80,15 +91,17 @@ class _Worlds:
 
     def __init__(self, problem: Problem, travel: Array) -> None:
         self._travel = travel
+        self._tasks = problem.tasks
         self._start = CollisionWorld.of_problem(problem)
-        self._made: dict[tuple[tuple[str, bytes], ...], Bodies] = {}
+        self._made: dict[_State, Bodies] = {}
 
     def bodies_of(self, stage: Stage) -> Bodies:
         """The bodies of the world during a segment, with no touch permitted."""
         poses = (*stage.standing.items(), *stage.attached.items())
-        key = tuple((name, T.tobytes()) for name, T in poses)
+        forbidden = self._tasks[stage.task_index].carry.forbidden
+        key = (forbidden, tuple((name, T.tobytes()) for name, T in poses))
         if key not in self._made:
-            world = self._start
+            world = self._start.forbidding(forbidden)
             for name, T_world_object in stage.standing.items():
                 world = world.place(name, T_world_object)
             for name, T_tool_object in stage.attached.items():
@@ -128,7 +141,7 @@ def _overlap_fault(finding: Finding, place: str) -> Fault:
     )
     if finding.allowed > 0.0:
         return Fault("touch", f"{message}; {allowed:g} mm is let pass")
-    return Fault("collision", message)
+    return Fault("region" if finding.region else "collision", message)
 
 
 def _undecided_fault(finding: Finding, place: str) -> Fault:
