@@ -7,10 +7,23 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-
-from mmplan.benchmarking.records import Key
+from typing import Protocol
 
 _SETUP = 0  # the byte that is locked while a store is opened
+
+
+class RunKey(Protocol):
+    """A named tuple that tells one run from every other in the same store."""
+
+    @property
+    def _fields(self) -> tuple[str, ...]: ...
+
+    def __iter__(self) -> Iterator[object]:
+        """Its values."""
+
+    @property
+    def digest(self) -> str:
+        """The key as a number in hexadecimal digits."""
 
 
 class Claims:
@@ -25,7 +38,7 @@ class Claims:
         """Open the file of the claims, and make it where there is none."""
         self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
 
-    def take(self, key: Key) -> bool:
+    def take(self, key: RunKey) -> bool:
         """Whether the run is now this process's to do."""
         try:
             fcntl.lockf(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, _byte(key))
@@ -33,7 +46,7 @@ class Claims:
             return False
         return True
 
-    def release(self, key: Key) -> None:
+    def release(self, key: RunKey) -> None:
         """Let others have the run."""
         fcntl.lockf(self._file, fcntl.LOCK_UN, 1, _byte(key))
 
@@ -51,5 +64,5 @@ class Claims:
         os.close(self._file)
 
 
-def _byte(key: Key) -> int:
+def _byte(key: RunKey) -> int:
     return 1 + int(key.digest[:14], 16)

@@ -1,91 +1,65 @@
-"""Benchmark logs in OMPL's plain-text format, with columns of our own.
+"""Benchmark logs of optimizers in OMPL's format, with columns of our own.
 
-`ompl_benchmark_statistics` turns them into the database that Planner Arena shows. OMPL
-itself writes such logs only of queries that it was given and only with its own
-columns, and a Python callback cannot add to them; here every run's query is what its
-optimizer has found.
+Every run's query is what its optimizer has found.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from importlib.metadata import version
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import TypeAlias
 
 from mmplan.benchmarking.contests import Contest
+from mmplan.benchmarking.ompl_format import EXACT, TIMEOUT, Column, Experiment, Planner
 from mmplan.benchmarking.records import Record
 
-# OMPL's own numbers for how a planner ended.
-_STATUS = (
-    "status|Unknown status|Invalid start|Invalid goal|Unrecognized goal type|Timeout|"
-    "Approximate solution|Exact solution|Crash"
-)
-_TIMEOUT, _EXACT = 4, 6
-
-
-class _Column(NamedTuple):
-    name: str
-    type: str
-    of: Callable[[Record], Any]
+_Column: TypeAlias = Column[Record]
 
 
 def ompl_log(contest: Contest, software: str) -> str:
     """The log of a contest: its contenders are the planners of one experiment."""
     records = [r for runs in contest.contenders.values() for r in runs]
-    lines = [
-        f"mmplan version {version('mmplan')}",
-        f"Experiment {_word(contest.problem.name)}_{contest.evaluations}",
-        "2 experiment properties",
-        f"evaluations INTEGER = {contest.evaluations}",
-        f"best_score REAL = {contest.best!r}",
-        f"Running on {_word(', '.join(sorted({r.host for r in records})))}",
-        f"Starting at {_date(min(r.finished for r in records))}",
-        "<<<|",
-        f"scene {contest.problem.scene}",
-        f"fingerprint {contest.problem.fingerprint}",
-        software,
-        "|>>>",
-        f"{min(r.seed for r in records)} is the random seed",
-        f"{max(_wall(r) for r in records)!r} seconds per run",
-        "0 MB per run",
-        f"{max(len(runs) for runs in contest.contenders.values())} runs per planner",
-        f"{sum(_wall(r) for r in records)!r} seconds spent to collect the data",
-        "1 enum type",
-        _STATUS,
-        f"{len(contest.contenders)} planners",
-    ]
-    for label, runs in contest.contenders.items():
-        lines += _planner(label, runs, contest)
-    return "\n".join(lines) + "\n"
+    return Experiment(
+        name=f"{contest.problem.name}_{contest.evaluations}",
+        properties=(
+            f"evaluations INTEGER = {contest.evaluations}",
+            f"best_score REAL = {contest.best!r}",
+        ),
+        hosts=[r.host for r in records],
+        finished=min(r.finished for r in records),
+        setup=(
+            f"scene {contest.problem.scene}",
+            f"fingerprint {contest.problem.fingerprint}",
+            software,
+        ),
+        seed=min(r.seed for r in records),
+        time_limit=max(_wall(r) for r in records),
+        seconds=sum(_wall(r) for r in records),
+        planners=[
+            _planner(label, runs, contest) for label, runs in contest.contenders.items()
+        ],
+    ).log()
 
 
-def _planner(label: str, runs: Sequence[Record], contest: Contest) -> list[str]:
-    columns = _columns(runs, contest)
-    return [
-        label,
-        "3 common properties",
-        f"optimizer = {runs[0].optimizer}",
-        f"planner = {runs[0].planner or 'none'}",
-        f"settings = {runs[0].settings}",
-        f"{len(columns)} properties for each run",
-        *(f"{column.name} {column.type}" for column in columns),
-        f"{len(runs)} runs",
-        *("".join(f"{_text(c.of(r))}; " for c in columns) for r in runs),
-        "3 progress properties for each run",
-        "time REAL",
-        "evaluations INTEGER",
-        "best score REAL",
-        f"{len(runs)} runs",
-        *(_progress(r) for r in runs),
-        ".",
-    ]
+def _planner(label: str, runs: Sequence[Record], contest: Contest) -> Planner[Record]:
+    return Planner(
+        label=label,
+        common={
+            "optimizer": runs[0].optimizer,
+            "planner": runs[0].planner or "none",
+            "settings": runs[0].settings,
+        },
+        columns=_columns(runs, contest),
+        runs=runs,
+        progress_columns=("time REAL", "evaluations INTEGER", "best score REAL"),
+        progress=[_progress(r) for r in runs],
+    )
 
 
 def _columns(runs: Sequence[Record], contest: Contest) -> list[_Column]:
     share = 100.0 / contest.best if contest.best > 0.0 else 0.0
     columns = [
         _Column("solved", "BOOLEAN", lambda r: r.solved),
-        _Column("status", "ENUM", lambda r: _EXACT if r.solved else _TIMEOUT),
+        _Column("status", "ENUM", lambda r: EXACT if r.solved else TIMEOUT),
         _Column("time", "REAL", _wall),
         _Column("score", "REAL", lambda r: r.score),
         _Column("normalized score", "REAL", lambda r: share * r.score),
@@ -141,19 +115,3 @@ def _progress(r: Record) -> str:
 
 def _wall(r: Record) -> float:
     return sum(stage["wall"] for stage in r.times.values())
-
-
-def _text(value: Any) -> str:
-    if value is None:
-        return ""
-    return str(int(value)) if isinstance(value, bool) else repr(value)
-
-
-def _word(text: str) -> str:
-    """The text as one word, as the format wants it."""
-    return "_".join(text.replace(",", " ").split()) or "unknown"
-
-
-def _date(text: str) -> str:
-    """An ISO date as OMPL writes it."""
-    return text[:19].replace("T", " ")

@@ -1,241 +1,43 @@
-"""The store of a benchmark: one SQLite file to which runs are added one by one.
-
-A run that is stored stays stored whatever ends the process, and a process that is
-started again finds what is missing. docs/benchmarks.md describes the tables.
-"""
+"""The store of a benchmark of optimizers. docs/benchmarks.md describes its tables."""
 
 from __future__ import annotations
 
-import json
-import sqlite3
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, fields
-from pathlib import Path
-from typing import Any
-
-from mmplan.benchmarking.claims import Claims
 from mmplan.benchmarking.records import Job, Key, Record
-from mmplan.exceptions import InputError
+from mmplan.benchmarking.run_store import Layout, ProblemEntry, RunStore
 
 STORE_FILE = "results.sqlite"
 FORMAT = 1
-_CLAIMS_FILE = "claims.lock"
-_PATIENCE = 60.0  # s that a process waits for another to finish writing
-_JSON = frozenset({"ends", "genes", "history", "outcomes", "plan", "seconds", "times"})
-_NUMBERS = {
-    "evaluations": "INTEGER",
-    "seed": "INTEGER",
-    "success": "INTEGER",
-    "used": "INTEGER",
-    "score": "REAL",
-    "cycles": "REAL",
-}
-_COLUMNS = {f.name: _NUMBERS.get(f.name, "TEXT") for f in fields(Record)}
-_KEY = ", ".join(Key._fields)
-_SCHEMA = f"""
-CREATE TABLE IF NOT EXISTS software (versions TEXT PRIMARY KEY);
-CREATE TABLE IF NOT EXISTS problems (
-    name TEXT PRIMARY KEY, scene TEXT, fingerprint TEXT, floor_plan TEXT
-);
-CREATE TABLE IF NOT EXISTS runs (
-    {", ".join(f"{name} {kind}" for name, kind in _COLUMNS.items())},
-    PRIMARY KEY ({_KEY})
-);
+
+__all__ = ["FORMAT", "STORE_FILE", "ProblemEntry", "Store"]
+
+
+class Store(RunStore[Job, Record]):
+    """The results in one folder. A process opens a folder once at a time."""
+
+    layout = Layout(
+        file=STORE_FILE,
+        format=FORMAT,
+        record=Record,
+        key=Key,
+        json=frozenset(
+            {"ends", "genes", "history", "outcomes", "plan", "seconds", "times"}
+        ),
+        numbers={
+            "evaluations": "INTEGER",
+            "seed": "INTEGER",
+            "success": "INTEGER",
+            "used": "INTEGER",
+            "score": "REAL",
+            "cycles": "REAL",
+        },
+        truths=frozenset({"success"}),
+        views="""
 CREATE VIEW IF NOT EXISTS best AS
     SELECT problem, max(score) AS score, optimizer, evaluations, seed
     FROM runs WHERE success GROUP BY problem;
-PRAGMA user_version = {FORMAT};
-"""
-
-
-@dataclass(frozen=True)
-class ProblemEntry:
-    """A problem of the benchmark; `floor_plan` is what its pictures need."""
-
-    name: str
-    scene: str  # path of the scene file
-    fingerprint: str
-    floor_plan: dict[str, Any]
-
-
-class Store:
-    """The results in one folder. A process opens a folder once at a time."""
-
-    def __init__(self, folder: str | Path, *, create: bool = False) -> None:
-        """Open the store of a folder; with `create`, make both where they are missing.
-
-        Raises:
-            InputError: There is no store, or what is there is none.
-        """
-        self.folder = Path(folder)
-        self.path = self.folder / STORE_FILE
-        if not create and not self.path.is_file():
-            raise InputError(f"{folder}: holds no results ({STORE_FILE})")
-        with self._refusing():
-            self.folder.mkdir(parents=True, exist_ok=True)
-            self._claims = Claims(self.folder / _CLAIMS_FILE)
-        try:
-            with self._refusing(), self._claims.setting_up():
-                self._database = self._connect()
-        except InputError:
-            self._claims.close()
-            raise
-
-    def close(self) -> None:
-        """Close the file and give up all claims."""
-        self._database.close()
-        self._claims.close()
-
-    def __enter__(self) -> Store:
-        """Use the store for a block."""
-        return self
-
-    def __exit__(self, *exception: object) -> None:
-        """Close it."""
-        self.close()
-
-    def register(self, problem: ProblemEntry, software: str) -> None:
-        """Say what the next runs are runs of.
-
-        Raises:
-            InputError: The store holds runs of another scene by that name, or of
-                other software: they must not be mixed.
-        """
-        with self._transaction():
-            self._refuse_other_software(software)
-            self._refuse_other_scene(problem)
-            self._database.execute(
-                "INSERT OR IGNORE INTO software VALUES (?)", (software,)
-            )
-            self._database.execute(
-                "INSERT OR IGNORE INTO problems VALUES (?, ?, ?, ?)",
-                (
-                    problem.name,
-                    problem.scene,
-                    problem.fingerprint,
-                    json.dumps(problem.floor_plan),
-                ),
-            )
-
-    def missing(self, jobs: Iterable[Job]) -> list[Job]:
-        """Those of the jobs whose runs are not stored."""
-        stored = {Key(*row) for row in self._rows(f"SELECT {_KEY} FROM runs")}
-        return [job for job in jobs if job.key not in stored]
-
-    def claim(self, job: Job) -> bool:
-        """Whether a run is to be done by this process: not stored, nor being done."""
-        if not self._claims.take(job.key):
-            return False
-        if self._has(job.key):  # stored since this process has looked
-            self._claims.release(job.key)
-            return False
-        return True
-
-    def add(self, record: Record) -> None:
-        """Store a run for good; a run that is stored already stays as it is."""
-        values = [_stored(name, getattr(record, name)) for name in _COLUMNS]
-        marks = ", ".join("?" * len(values))
-        with self._transaction():
-            self._database.execute(
-                f"INSERT OR IGNORE INTO runs VALUES ({marks})", values
-            )
-        self._claims.release(record.key)
-
-    def records(self) -> list[Record]:
-        """All runs, sorted by what they are runs of."""
-        names = ", ".join(_COLUMNS)
-        rows = self._rows(f"SELECT {names} FROM runs ORDER BY {_KEY}")
-        return [_record(row) for row in rows]
-
-    def problems(self) -> list[ProblemEntry]:
-        """The problems, in the order in which they came."""
-        rows = self._rows("SELECT * FROM problems ORDER BY rowid")
-        return [ProblemEntry(n, s, f, json.loads(plan)) for n, s, f, plan in rows]
-
-    def software(self) -> str:
-        """The versions that the runs were made with; empty before the first run."""
-        rows = self._rows("SELECT versions FROM software")
-        return str(rows[0][0]) if rows else ""
+""",
+    )
 
     def best(self) -> dict[str, float]:
         """The best score ever found for each problem, by any optimizer and budget."""
         return dict(self._rows("SELECT problem, score FROM best"))
-
-    def _connect(self) -> sqlite3.Connection:
-        database = sqlite3.connect(self.path, timeout=_PATIENCE, isolation_level=None)
-        try:
-            (found,) = database.execute("PRAGMA user_version").fetchone()
-            if found not in (0, FORMAT):
-                raise InputError(
-                    f"{self.path}: has format {found}; this mmplan reads {FORMAT}"
-                )
-            database.execute("PRAGMA journal_mode = WAL")
-            database.execute("PRAGMA synchronous = FULL")
-            if found == 0:
-                database.executescript(f"BEGIN IMMEDIATE; {_SCHEMA} COMMIT;")
-        except BaseException:
-            database.close()
-            raise
-        return database
-
-    @contextmanager
-    def _refusing(self) -> Iterator[None]:
-        """Turn what the system says of the folder or file into an error for people."""
-        try:
-            yield
-        except OSError as error:
-            raise InputError(f"{self.folder}: {error.strerror}") from None
-        except sqlite3.DatabaseError as error:
-            raise InputError(f"{self.path}: {error}") from None
-
-    @contextmanager
-    def _transaction(self) -> Iterator[None]:
-        self._database.execute("BEGIN IMMEDIATE")
-        try:
-            yield
-        except BaseException:
-            self._database.execute("ROLLBACK")
-            raise
-        self._database.execute("COMMIT")
-
-    def _rows(self, query: str, values: Iterable[Any] = ()) -> list[tuple[Any, ...]]:
-        return self._database.execute(query, tuple(values)).fetchall()
-
-    def _has(self, key: Key) -> bool:
-        condition = " AND ".join(f"{name} = ?" for name in Key._fields)
-        return bool(self._rows(f"SELECT 1 FROM runs WHERE {condition}", key))
-
-    def _refuse_other_software(self, software: str) -> None:
-        known = self.software()
-        if known not in ("", software):
-            raise InputError(
-                f"{self.folder}: holds runs of other software, which are not mixed "
-                f"with new ones; give another folder\n  there: {known}\n"
-                f"  here:  {software}"
-            )
-
-    def _refuse_other_scene(self, problem: ProblemEntry) -> None:
-        query = "SELECT scene, fingerprint FROM problems WHERE name = ?"
-        for scene, fingerprint in self._rows(query, (problem.name,)):
-            if fingerprint != problem.fingerprint:
-                raise InputError(
-                    f"{problem.scene}: {self.folder} holds runs of another scene named "
-                    f"'{problem.name}', or of this one before it was changed ({scene}, "
-                    f"fingerprint {fingerprint[:12]}; now "
-                    f"{problem.fingerprint[:12]}); give another folder"
-                )
-
-
-def _stored(name: str, value: Any) -> Any:
-    if name in _JSON:
-        return json.dumps(value)
-    return int(value) if isinstance(value, bool) else value
-
-
-def _record(row: tuple[Any, ...]) -> Record:
-    values = dict(zip(_COLUMNS, row, strict=True))
-    for name in _JSON:
-        values[name] = json.loads(values[name])
-    values["success"] = bool(values["success"])
-    return Record(**values)
