@@ -67,9 +67,7 @@ def collisions(
     """
     at_end = np.flatnonzero(queries.end == end)
     outcome = score(end, queries.q_base[at_end], queries.grasps[at_end]).outcome
-    rows = spread(at_end[np.isin(outcome, outcomes)], most)
-    end_, q_base, grasps = queries
-    chosen = Queries(end_[rows], q_base[rows], grasps[rows])
+    chosen = queries.take(spread(at_end[np.isin(outcome, outcomes)], most))
     contacts = [
         score.contacts(end, q_base, grasp)
         for q_base, grasp in zip(chosen.q_base, chosen.grasps, strict=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 from typing import cast
@@ -79,6 +80,21 @@ def build_robot(description: RobotDescription) -> Robot:
         ),
         path=description.path,
     )
+
+
+def with_arm_limits(robot: Robot, lower: Array, upper: Array) -> Robot:
+    """The robot with other limits (arm joints,) of its arm, in rad or m.
+
+    Raises:
+        InputError: Its robot.yaml cannot be read any more.
+    """
+    model = robot.model.copy()
+    model.lowerPositionLimit[robot.arm.indices] = lower
+    model.upperPositionLimit[robot.arm.indices] = upper
+    arm = replace(robot.arm, lower=read_only(lower), upper=read_only(upper))
+    description = load_robot_description(robot.path)
+    ik = _inverse_kinematics(description, model, robot.tool_frame)
+    return replace(robot, model=model, arm=arm, ik=ik)
 
 
 def _raise_if_any(description: RobotDescription, faults: Iterator[str]) -> None:

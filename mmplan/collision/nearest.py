@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -30,9 +31,7 @@ def nearest_obstacles(world: CollisionWorld, q: Array) -> tuple[Nearest, ...]:
 
     Links that have no obstacle are left out.
     """
-    geometry = world.geometry.clone()
     bodies = world.bodies
-    geometry.removeAllCollisionPairs()
     pairs = [
         (i, j)
         for i, mover in enumerate(bodies)
@@ -40,18 +39,49 @@ def nearest_obstacles(world: CollisionWorld, q: Array) -> tuple[Nearest, ...]:
         if mover.kind in _ROBOT and around.kind in _AROUND
         if (mover.kind, around.kind) != ("base", "ground")
     ]
+    found: dict[str, Nearest] = {}
+    for nearest in _measured(world, q, pairs):
+        link = nearest.link
+        if link not in found or nearest.distance < found[link].distance:
+            found[link] = nearest
+    return tuple(found.values())
+
+
+def nearest_points(world: CollisionWorld, q: Array, first: str, second: str) -> Array:
+    """Where two things, by name, are nearest at q (nq,), or overlap the deepest.
+
+    The points on either, (2, 3), m, in the world.
+    """
+    owners = [body.owner for body in world.bodies]
+    pairs = [
+        (i, j)
+        for i, one in enumerate(owners)
+        for j, other in enumerate(owners)
+        if (one, other) == (first, second)
+    ]
+    nearest = min(_measured(world, q, pairs), key=lambda n: n.distance)
+    return np.stack([nearest.on_link, nearest.on_obstacle])
+
+
+def _measured(
+    world: CollisionWorld, q: Array, pairs: Sequence[tuple[int, int]]
+) -> Iterator[Nearest]:
+    """The distances of pairs of bodies at q (nq,)."""
+    geometry = world.geometry.clone()
+    geometry.removeAllCollisionPairs()
     for i, j in pairs:
         geometry.addCollisionPair(pin.CollisionPair(i, j))
     data, geometry_data = world.model.createData(), geometry.createData()
     make_exact(geometry_data)
     pin.updateGeometryPlacements(world.model, data, geometry, geometry_data, q)
-    found: dict[str, Nearest] = {}
     for pair, (i, j) in enumerate(pairs):
         result = pin.computeDistance(geometry, geometry_data, pair)
-        link, distance = bodies[i].owner, float(result.min_distance)
-        if link not in found or distance < found[link].distance:
-            points = (result.getNearestPoint1(), result.getNearestPoint2())
-            on_link, on_obstacle = (np.array(p).reshape(3) for p in points)
-            obstacle = bodies[j].owner
-            found[link] = Nearest(link, obstacle, distance, on_link, on_obstacle)
-    return tuple(found.values())
+        points = (result.getNearestPoint1(), result.getNearestPoint2())
+        on_link, on_obstacle = (np.array(p).reshape(3) for p in points)
+        yield Nearest(
+            world.owner_of(i),
+            world.owner_of(j),
+            float(result.min_distance),
+            on_link,
+            on_obstacle,
+        )

@@ -52,7 +52,7 @@ def _add_render(commands: Any) -> None:
         help=f"the file to write; its ending says what: {', '.join(_KINDS)}",
     )
     render.add_argument(
-        "--size", type=_size, metavar="WxH", default=(1280, 800), help="pixels"
+        "--size", type=size_in_pixels, metavar="WxH", default=(1280, 800), help="pixels"
     )
     render.add_argument(
         "--camera",
@@ -90,10 +90,7 @@ def _view(options: argparse.Namespace) -> int:
 
 
 def _render(options: argparse.Namespace) -> int:
-    kind = options.output.suffix.lower()
-    if kind not in _KINDS:
-        raise InputError(f"{options.output}: expected a name in {', '.join(_KINDS)}")
-    require_folder(options.output)
+    kind = kind_of(options.output, _KINDS)
     exhibit = load_exhibit(options.subject, options.scene)
 
     from mmplan.terminal import progress_display, show
@@ -106,6 +103,19 @@ def _render(options: argparse.Namespace) -> int:
     if not options.quiet:
         show(f"written to {options.output}")
     return SOLVED
+
+
+def kind_of(output: Path, kinds: Sequence[str]) -> str:
+    """The ending of a file that is to be drawn, one of some kinds.
+
+    Raises:
+        InputError: It is none of them, or the file's folder is not there.
+    """
+    kind = output.suffix.lower()
+    if kind not in kinds:
+        raise InputError(f"{output}: expected a name in {', '.join(kinds)}")
+    require_folder(output)
+    return kind
 
 
 def load_exhibit(subject: str, scene: str | None = None) -> Exhibit:
@@ -200,7 +210,7 @@ def _layers(text: str, known: set[str]) -> list[str]:
     return names
 
 
-def _size(text: str) -> tuple[int, int]:
+def size_in_pixels(text: str) -> tuple[int, int]:
     """Width and height in pixels: `1280x800`."""
     width, _, height = text.partition("x")
     if not (width.isdecimal() and height.isdecimal()):

@@ -1,7 +1,7 @@
 """Why a problem has no solution, or how hard it is, and what would change that."""
 
 from mmplan.explanation.causes import Cause
-from mmplan.explanation.explain import Explanation, explain
+from mmplan.explanation.explaining import Explanation, explain, single_tasks
 from mmplan.explanation.funnel import Stage
 from mmplan.explanation.near_miss import NearMiss
 from mmplan.explanation.relaxations import Relaxation
@@ -16,4 +16,5 @@ __all__ = [
     "explain",
     "explanation_json",
     "explanation_lines",
+    "single_tasks",
 ]

@@ -86,7 +86,7 @@ class Evidence:
         """What the base hits where the arm would reach from."""
         seen = self.surveys[end]
         rows = (seen.reach == Outcome.SCORED) & (seen.base == Outcome.BASE_COLLISION)
-        chosen = Queries(*(part[rows] for part in seen.queries))
+        chosen = seen.queries.take(rows)
         outcomes = (Outcome.BASE_COLLISION,)
         return collisions(self.score, end, chosen, _COLLISIONS, outcomes)
 

@@ -1,126 +1,69 @@
-"""The nearest miss: the pair of base and grasp that fails by the least."""
+"""The nearest miss: what is missing in the pair of base and grasp that nearly works."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
-from mmplan.blockers import Collisions
-from mmplan.explanation.causes import Cause
-from mmplan.explanation.evidence import Evidence
-from mmplan.explanation.survey import Survey
-from mmplan.optimizers import SearchSpace
-from mmplan.scoring import End, Outcome, ScoreFunction
+from mmplan.scoring import End
+from mmplan.shapes import Array
 
-_MILLIMETRES = 1000.0
-_STEPS = 40  # of the descent to a nearer miss
-_STEP = 0.05  # m, or the share of a grasp gene's range, at first
-_COLLIDING = (Outcome.COLLISION, Outcome.HAND_OPEN_COLLISION)
+_CENTIMETRES, _MILLIMETRES = 100.0, 1000.0
+
+Point = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
 class NearMiss:
     """What is missing in the best pair of base and grasp that fails at one end.
 
-    `amount` is a depth in m where two things overlap, and rad or m where `first` is a
-    joint beyond its limit, in which case `second` is None.
+    Of a miss by
+
+    - `overlap`, the link `first` overlaps `second` by `amount`, m;
+    - `turn` or `slide`, the joint `first` is beyond its limit by `amount`, rad or m;
+    - `reach`, the tool ends `amount` (m) short of the grasp, turned as that wants it.
+
+    `q` is the configuration, in which `line` joins the two points (m, in the world)
+    that should coincide or stay apart. If the grasp was chosen because it works at the
+    other end, that is `works_at`.
     """
 
     end: End
+    kind: Literal["overlap", "turn", "slide", "reach"]
     first: str
     second: str | None
     amount: float
     base: tuple[float, ...]
     grasp: tuple[float, ...]
+    q: tuple[float, ...]
+    line: tuple[Point, Point] | None = None
+    works_at: End | None = None
 
     def __str__(self) -> str:
         """The miss in words."""
-        where = f"at the {self.end.name.lower()}"
-        base = ", ".join(f"{x:.3f}" for x in self.base)
-        stands = f"with the base at ({base})" if self.base else ""
-        if self.second is None:
-            return (
-                f"{where} {self.first} is {self.amount:.3f} beyond its limit {stands}"
-            )
-        depth = self.amount * _MILLIMETRES
-        return f"{where} {self.first} misses {self.second} by -{depth:.1f} mm {stands}"
+        at = f"at the {self.end.name.lower()}"
+        if self.works_at is not None:
+            other = self.works_at.name.lower()
+            at = f"the grasp that gets furthest works at the {other}; {at}"
+        place = f"({', '.join(f'{x:.3f}' for x in self.base)})"
+        stands = f" with the base at {place}" if self.base else ""
+        if self.kind == "overlap":
+            depth = f"-{self.amount * _MILLIMETRES:.1f} mm"
+            return f"{at} {self.first} misses {self.second} by {depth}{stands}"
+        length = f"{self.amount * _CENTIMETRES:.1f} cm"
+        if self.kind != "reach":
+            turn = f"{np.degrees(self.amount):.1f} degrees"
+            beyond = turn if self.kind == "turn" else length
+            return f"{at} {self.first} is {beyond} beyond its limit{stands}"
+        short = f"{length} short of the grasp"
+        if not self.base:
+            return f"{at} the arm leaves the tool {short}"
+        return f"{at} the best base that is free, {place}, leaves the tool {short}"
 
 
-def nearest_miss(
-    evidence: Evidence, cause: Cause, rng: np.random.Generator
-) -> NearMiss | None:
-    """The nearest miss of what a cause is about, None where there is no measure."""
-    if cause.end is None:
-        return None
-    if cause.kind == "joint limits":
-        return _nearest_limit(evidence.score, evidence.surveys[cause.end])
-    if cause.kind in ("collision", "hand opened"):
-        found = evidence.collisions(cause.end, _COLLIDING)
-        return _nearest_collision(evidence.score, cause.end, found, evidence.space, rng)
-    return None
-
-
-def _nearest_collision(
-    score: ScoreFunction,
-    end: End,
-    found: Collisions,
-    space: SearchSpace,
-    rng: np.random.Generator,
-) -> NearMiss | None:
-    """The shallowest of the collisions, brought nearer by random steps from there.
-
-    None where there are no collisions.
-    """
-    depths = [c[0].depth if c else np.inf for c in found.contacts]
-    if not np.isfinite(min(depths, default=np.inf)):
-        return None
-    best = int(np.argmin(depths))
-    contact = found.contacts[best][0]
-    q_base, grasp = found.queries.q_base[best], found.queries.grasps[best]
-    genes = space.grasps
-    for step in np.geomspace(_STEP, _STEP / 50.0, _STEPS):
-        moved = q_base + rng.normal(0.0, step, len(q_base))
-        q = space.bases[end].nearest(moved[None])[0]
-        g = genes.contain(grasp + rng.normal(0.0, step, len(grasp)) * genes.range)
-        if score(end, q[None], g[None]).outcome[0] not in _COLLIDING:
-            continue
-        contacts = score.contacts(end, q, g)
-        if contacts and contacts[0].depth < contact.depth:
-            contact, q_base, grasp = contacts[0], q, g
-    return NearMiss(
-        end,
-        contact.first,
-        contact.second,
-        contact.depth,
-        tuple(q_base.tolist()),
-        tuple(grasp.tolist()),
-    )
-
-
-def _nearest_limit(score: ScoreFunction, survey: Survey) -> NearMiss | None:
-    """The configuration that is least beyond the joint limits, None if there is none.
-
-    Only bases count that are free of collision, unless none of them is near enough.
-    """
-    beyond = survey.reach == Outcome.JOINT_LIMITS
-    free = beyond & (survey.base == Outcome.SCORED)
-    rows = np.flatnonzero(free if free.any() else beyond)
-    if len(rows) == 0:
-        return None
-    q_base, grasps = survey.queries.q_base[rows], survey.queries.grasps[rows]
-    arms = score.arms(survey.end, q_base, grasps)
-    group = score.problem.robot.arm
-    q = arms.q[..., group.indices]  # (n, branches, arm joints)
-    excess = np.maximum(group.lower - q, q - group.upper)
-    worst = np.where(arms.exists, excess.max(axis=2), np.inf)
-    row, branch = np.unravel_index(int(np.argmin(worst)), worst.shape)
-    joint = int(np.argmax(excess[row, branch]))
-    return NearMiss(
-        survey.end,
-        group.names[joint],
-        None,
-        float(excess[row, branch, joint]),
-        tuple(q_base[row].tolist()),
-        tuple(grasps[row].tolist()),
-    )
+def line_between(start: Array, end: Array) -> tuple[Point, Point]:
+    """Two points (3,) as plain numbers."""
+    (a, b, c), (d, e, f) = start.tolist(), end.tolist()
+    return (a, b, c), (d, e, f)

@@ -9,7 +9,9 @@ from itertools import combinations
 import numpy as np
 
 from mmplan.exceptions import NoPlanError
-from mmplan.explanation.causes import STRAIGHT, Cause
+from mmplan.explanation.causes import STRAIGHT, Cause, Kind
+from mmplan.explanation.other_grasps import other_families
+from mmplan.explanation.robot_changes import narrower_hand, wider_limits
 from mmplan.explanation.search import (
     blocked_line,
     blocked_motion,
@@ -20,7 +22,6 @@ from mmplan.explanation.settings import (
     Change,
     Setting,
     any_quality,
-    narrower_hand,
     shifted,
     shorter_line,
     slimmer_object,
@@ -45,12 +46,24 @@ _DIRECTIONS = (
 _NARROWER = (0.02, 0.04)  # m
 _SLIMMER = (0.02, 0.05, 0.1)  # m
 _WIDER = (0.1, 0.3, 1.0)  # m
+_TURNS = tuple(np.radians([10.0, 20.0, 40.0, 80.0]).tolist())  # rad
 _SHORTER = (0.75, 0.5, 0.25, 0.0)  # of what the scene wants
 _SUSPECTS = 4  # obstacles that are taken away one by one, then two by two
 _CANDIDATES = 3  # whose straight motions are tried
 _PAIRS = 500  # drawn at each end to see whether a search is worth its while
 _EVALUATIONS = 200  # of a search
 _ITERATIONS = 1000  # of the planner
+
+# What another grasp may help against.
+_GRASPING: tuple[Kind, ...] = (
+    "hand",
+    "grasp quality",
+    "reach",
+    "joint limits",
+    "collision",
+    "hand opened",
+    "common grasp",
+)
 
 
 @dataclass(frozen=True)
@@ -120,11 +133,14 @@ def _quick(problem: Problem) -> Problem:
 
 
 def relaxations(
-    trials: Trials, cause: Cause, suspects: Sequence[str]
+    trials: Trials, cause: Cause, suspects: Sequence[str], joints: Sequence[str]
 ) -> tuple[Relaxation, ...]:
-    """All that was tried; what helps comes first, the smallest change before others."""
+    """All that was tried; what helps comes first, the smallest change before others.
+
+    `suspects` are taken away, and the limits of some `joints` widened.
+    """
     tried = list(_removals(trials, suspects))
-    for ladder in _ladders(trials.setting, cause):
+    for ladder in _ladders(trials.setting, cause, joints):
         tried += _climb(trials, ladder)
     return tuple(sorted(tried, key=lambda r: (not r.solvable, r.size, r.text)))
 
@@ -152,15 +168,12 @@ def _climb(trials: Trials, ladder: Ladder) -> Iterator[Relaxation]:
             return
 
 
-def _ladders(setting: Setting, cause: Cause) -> Iterator[Ladder]:
+def _ladders(setting: Setting, cause: Cause, joints: Sequence[str]) -> Iterator[Ladder]:
     """The kinds of changes that can help against a cause."""
     task, kind = setting.task, cause.kind
-    if kind == "grasp quality":
-        yield [[any_quality(setting)]]
-    if kind in ("hand", "hand opened"):
-        yield [[slimmer_object(setting, by)] for by in _SLIMMER]
-    if kind in ("collision", "hand opened", "common grasp"):
-        yield [[narrower_hand(by)] for by in _NARROWER]
+    yield from _ladders_of_grasping(setting, kind)
+    if kind == "joint limits":
+        yield [[wider_limits(setting, j, by) for j in joints] for by in _TURNS]
     if kind in STRAIGHT:
         length: float = getattr(task, kind) or 0.0
         yield [[shorter_line(task, kind, share * length)] for share in _SHORTER]
@@ -177,3 +190,15 @@ def _ladders(setting: Setting, cause: Cause) -> Iterator[Ladder]:
         ]
         for by in _SHIFTS
     ]
+
+
+def _ladders_of_grasping(setting: Setting, kind: Kind) -> Iterator[Ladder]:
+    """Changes of the grasps, of the object and of the hand."""
+    if kind == "grasp quality":
+        yield [[any_quality(setting)]]
+    if kind in _GRASPING:
+        yield [list(other_families(setting))]
+    if kind in ("hand", "hand opened"):
+        yield [[slimmer_object(setting, by)] for by in _SLIMMER]
+    if kind in ("collision", "hand opened", "common grasp"):
+        yield [[narrower_hand(by)] for by in _NARROWER]

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from mmplan.explanation.causes import Cause
-from mmplan.explanation.explain import Explanation
+from mmplan.explanation.explaining import Explanation
 from mmplan.scoring import End
 
 _MOST_FAILED = 4  # changes that did not help, told by name
@@ -132,4 +132,10 @@ def _near_miss_json(found: Explanation) -> dict[str, Any] | None:
     miss = found.near_miss
     if miss is None:
         return None
-    return {**asdict(miss), "end": miss.end.name.lower(), "text": str(miss)}
+    works_at = None if miss.works_at is None else miss.works_at.name.lower()
+    return {
+        **asdict(miss),
+        "end": miss.end.name.lower(),
+        "works_at": works_at,
+        "text": str(miss),
+    }

@@ -17,7 +17,6 @@ from mmplan.collision import (
     moved_bounds,
     overlaps,
 )
-from mmplan.collision.hand_width import narrowed
 from mmplan.collision.solids import Solid
 from mmplan.explanation.slimming import slimmed
 from mmplan.problem import Problem, Task
@@ -99,19 +98,8 @@ def shifted(end: End, direction: tuple[int, int, int], distance: float) -> Chang
             return setting.with_task(replace(task, T_world_goal=T))
         return setting._replace(world=world.place(task.object, T))
 
-    text = f"with the {end.name.lower()} {_centimetres(distance)} {way}"
+    text = f"with the {end.name.lower()} {centimetres(distance)} {way}"
     return Change(text, distance, apply)
-
-
-def narrower_hand(by: float) -> Change:
-    """Palm and fingers are narrower by a length, m."""
-
-    def apply(setting: Setting) -> Setting:
-        robot = narrowed(setting.problem.robot, by)
-        problem = replace(setting.problem, robot=robot)
-        return Setting(problem, replace(setting.world, robot=robot))
-
-    return Change(f"with the hand {_centimetres(by)} narrower", by, apply)
 
 
 def slimmer_object(setting: Setting, by: float) -> Change:
@@ -132,7 +120,7 @@ def slimmer_object(setting: Setting, by: float) -> Change:
         problem = replace(problem, objects=objects)
         return Setting(problem, replace(world, scenery=scenery))
 
-    return Change(f"with the {name} {_centimetres(by)} slimmer", by, apply)
+    return Change(f"with the {name} {centimetres(by)} slimmer", by, apply)
 
 
 def wider_bounds(by: float) -> Change:
@@ -146,7 +134,7 @@ def wider_bounds(by: float) -> Change:
         bounds = np.clip(bounds, limits[:, :1], limits[:, 1:])
         return setting._replace(problem=replace(problem, base_bounds=bounds))
 
-    text = f"with the base allowed {_centimetres(by)} beyond its bounds"
+    text = f"with the base allowed {centimetres(by)} beyond its bounds"
     return Change(text, by, apply)
 
 
@@ -168,8 +156,8 @@ def without_zone(zone: Zone) -> Change:
 def shorter_line(task: Task, segment: str, length: float) -> Change:
     """A straight motion that the scene insists on is shorter, m."""
     wanted: float = getattr(task, segment)
-    left = _centimetres(length) if length else "nothing"
-    text = f"with {left} of {segment} instead of {_centimetres(wanted)}"
+    left = centimetres(length) if length else "nothing"
+    text = f"with {left} of {segment} instead of {centimetres(wanted)}"
 
     def apply(setting: Setting) -> Setting:
         shorter: dict[str, Any] = {segment: length}
@@ -205,5 +193,6 @@ def _bounds(solids: Sequence[Solid]) -> Bounds:
     return Bounds((lower + upper) / 2, (upper - lower) / 2)
 
 
-def _centimetres(length: float) -> str:
+def centimetres(length: float) -> str:
+    """A length (m) in words."""
     return f"{100.0 * length:.3g} cm"

@@ -91,16 +91,19 @@ def _bases(
     inside = score.base_outcomes(end, drawn) != Outcome.OUT_OF_BOUNDS
     if inside.mean() > _FEW:
         return drawn
-    return np.concatenate([drawn, _within_bounds(score, end, n, rng)])
+    span = score.problem.robot.reach + _SLACK
+    return np.concatenate([drawn, bases_about(score, end, span, n, rng)])
 
 
-def _within_bounds(
-    score: ScoreFunction, end: End, n: int, rng: np.random.Generator
+def bases_about(
+    score: ScoreFunction, end: End, span: float, n: int, rng: np.random.Generator
 ) -> Array:
-    """Bases uniform in that part of their bounds that is about the annulus."""
+    """Bases (n, b) uniform in that part of their bounds that is about the object.
+
+    That is within a distance `span` (m) along x and y; none if that is empty.
+    """
     low, high = score.problem.base_bounds.T
     centre = score.centre_of_mass(end)[:2]
-    span = score.problem.robot.reach + _SLACK
     low, high = np.maximum(low, -np.pi), np.minimum(high, np.pi)
     low[:2] = np.maximum(score.problem.base_bounds[:2, 0], centre - span)
     high[:2] = np.minimum(score.problem.base_bounds[:2, 1], centre + span)

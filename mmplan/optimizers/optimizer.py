@@ -35,6 +35,10 @@ class Queries(NamedTuple):
         """The first n of them."""
         return Queries(self.end[:n], self.q_base[:n], self.grasps[:n])
 
+    def take(self, which: npt.NDArray[np.bool_ | np.int64]) -> Queries:
+        """Some of them, by a mask (n,) or by their places."""
+        return Queries(self.end[which], self.q_base[which], self.grasps[which])
+
 
 class Optimizer(Protocol):
     """An optimizer of start base, goal base and grasp."""

@@ -43,6 +43,13 @@ class Arms(NamedTuple):
         return outcome
 
 
+class Overlap(NamedTuple):
+    """A configuration and what overlaps in it, deepest first."""
+
+    q: Array  # (nq,)
+    contacts: tuple[Contact, ...]
+
+
 class Feasibility:
     """The tests of one end of a task, cheapest first."""
 
@@ -125,19 +132,27 @@ class Feasibility:
         outcome[left[~self._rest_open.in_collision(q_open)]] = Outcome.SCORED
         return outcome
 
-    def base_contacts(self, q_base: Array) -> tuple[Contact, ...]:
-        """What the base alone overlaps at (base joints,)."""
-        return self._base_world.contacts(self._standing(q_base[None])[0])
+    def base_overlap(self, q_base: Array) -> Overlap:
+        """What the base alone overlaps at (base joints,), all else neutral."""
+        q = self._standing(q_base[None])[0]
+        return Overlap(q, self._base_world.contacts(q))
 
-    def least_contacts(self, q: Array, opened: Array) -> tuple[Contact, ...]:
-        """The overlaps of that configuration of q (m, nq) whose deepest is smallest."""
+    def least_overlap(self, q: Array, opened: Array) -> Overlap | None:
+        """The overlap of that configuration of q (m, nq) whose deepest is smallest.
+
+        The hand is closed in q; it is `opened` (hand joints,) where nothing else
+        overlaps. None if nothing overlaps in any.
+        """
         q_open = q.copy()
         q_open[:, self._robot.hand.indices] = opened
         found = [
-            self._closed_world.contacts(a) or self._open_fingers.contacts(b)
+            Overlap(a, closed)
+            if (closed := self._closed_world.contacts(a))
+            else Overlap(b, self._open_fingers.contacts(b))
             for a, b in zip(q, q_open, strict=True)
         ]
-        return min((c for c in found if c), key=lambda c: c[0].depth, default=())
+        overlaps = [o for o in found if o.contacts]
+        return min(overlaps, key=lambda o: o.contacts[0].depth, default=None)
 
     def _standing(self, q_base: Array) -> Array:
         """Configurations (n, nq) with the base at (n, b) and all else neutral."""

@@ -13,7 +13,7 @@ from mmplan.problem import Problem, Task, WeightedTerm
 from mmplan.scoring.branches import Branches, BranchSearch
 from mmplan.scoring.breakdown import Breakdown, links_of
 from mmplan.scoring.clutter import Clutter
-from mmplan.scoring.feasibility import Arms, Feasibility
+from mmplan.scoring.feasibility import Arms, Feasibility, Overlap
 from mmplan.scoring.grasp_quality import Hold, quality_measure
 from mmplan.scoring.joint_margin import JointMargin
 from mmplan.scoring.outcome import End, Outcome
@@ -168,23 +168,32 @@ class ScoreFunction:
         return Breakdown(outcome, float(score.total[0]), terms, links)
 
     def contacts(self, end: End, q_base: Array, grasp: Array) -> tuple[Contact, ...]:
+        """What one base (b,) and grasp (g,) collide with, see `overlap`."""
+        found = self.overlap(end, q_base, grasp)
+        return () if found is None else found.contacts
+
+    def overlap(self, end: End, q_base: Array, grasp: Array) -> Overlap | None:
         """What one base (b,) and grasp (g,) collide with, in the best of all branches.
 
         That is the branch whose deepest overlap is smallest; hand closed, or opened
-        where nothing else is in the way. Empty where no configuration is in collision.
+        where nothing else is in the way. None where no configuration is in collision.
         """
         feasibility = self._feasibility[end]
         if self.base_outcomes(end, q_base[None])[0] == Outcome.BASE_COLLISION:
-            return feasibility.base_contacts(q_base)
+            return feasibility.base_overlap(q_base)
         hold = self.holds(grasp[None])
         arms = feasibility.arms(q_base[None], hold.T_object_tool)
         q = arms.q[arms.within]
         q[:, self.problem.robot.hand.indices] = hold.closed[0]
-        return feasibility.least_contacts(q, hold.opened[0])
+        return feasibility.least_overlap(q, hold.opened[0])
 
     def arms(self, end: End, q_base: Array, grasps: Array) -> Arms:
         """What reaches grasps (n, g) from bases (n, b), in collision or not."""
-        return self._feasibility[end].arms(q_base, self.family.tool_poses(grasps))
+        return self.arms_to(end, q_base, self.family.tool_poses(grasps))
+
+    def arms_to(self, end: End, q_base: Array, T_object_tool: Array) -> Arms:
+        """The same for tool poses (n, 4, 4) in the object's frame."""
+        return self._feasibility[end].arms(q_base, T_object_tool)
 
     def base_outcomes(self, end: End, q_base: Array) -> npt.NDArray[np.int8]:
         """What is known of bases (n, b) without any grasp, (n,) of Outcome."""

@@ -64,6 +64,8 @@ def camera_of(exhibit: Exhibit, text: str, aspect: float = 1.6) -> Camera:
 
 def best_camera(exhibit: Exhibit, aspect: float = 1.6) -> Camera:
     """The direction from which most of what matters is in sight, all of it in view."""
+    if exhibit.focus is not None:
+        return _near(exhibit, exhibit.focus)
     points = _points_of_interest(exhibit)
     target = (points.min(axis=0) + points.max(axis=0)) / 2.0
     radius = float(np.linalg.norm(np.ptp(points, axis=0)) / 2.0) + _ROOM
@@ -89,8 +91,15 @@ def _close_up(exhibit: Exhibit, goal: bool) -> Camera:
     task = exhibit.problem.tasks[0]
     T = exhibit.problem.object(task.object).T_world_object
     target = (task.T_world_goal if goal else T)[:3, 3]
-    points = target + 0.1 * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
-    return _most_seen(exhibit, points, target, _CLOSE)
+    return _near(exhibit, target[None])
+
+
+def _near(exhibit: Exhibit, places: Array) -> Camera:
+    """A camera near places (n, 3), from where what is about them is in sight."""
+    about = 0.1 * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
+    points = (places[:, None] + about).reshape(-1, 3)
+    away = _CLOSE + float(np.linalg.norm(np.ptp(places, axis=0)))
+    return _most_seen(exhibit, points, places.mean(axis=0), away)
 
 
 def _numbers(text: str, best: Camera) -> Camera:

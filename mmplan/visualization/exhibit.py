@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -29,7 +29,10 @@ _SWELL = 0.001  # m
 
 @dataclass(frozen=True, eq=False)
 class Exhibit:
-    """Parts and the film that they move in."""
+    """Parts and the film that they move in.
+
+    Where a `focus` is given, pictures look at these points from near by.
+    """
 
     title: str
     subtitle: str
@@ -37,6 +40,7 @@ class Exhibit:
     plan: Plan | None
     parts: tuple[Part, ...]
     film: Film
+    focus: Array | None = None  # (n, 3), m
 
     def robot_parts(self) -> tuple[Part, ...]:
         """The parts of the robot's links."""
@@ -60,6 +64,18 @@ def exhibit_of_scene(problem: Problem) -> Exhibit:
     film = film_of_scene(problem)
     subtitle = f"{problem.robot.name}, {len(problem.tasks)} tasks, not solved"
     return Exhibit(problem.name, subtitle, problem, None, tuple(parts), film)
+
+
+def exhibit_of_moment(
+    problem: Problem, q: Array, standing: Mapping[str, Array], more: Iterable[Part]
+) -> Exhibit:
+    """The robot at q (nq,), objects where they are `standing`, and some parts more."""
+    parts = [*_world(problem), *_goals(problem), *more]
+    objects = tuple(
+        replace(o, T_world_object=standing[o.name]) for o in problem.objects
+    )
+    film = film_of_scene(replace(problem, q_start=q, objects=objects))
+    return Exhibit(problem.name, problem.robot.name, problem, None, tuple(parts), film)
 
 
 def robot_at(exhibit: Exhibit, q: Array, colour: Colour, name: str) -> Iterator[Part]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from mmplan.collision import CollisionWorld, local_bounds
 from mmplan.collision.hand_width import narrowed
 from mmplan.explanation import explain, explanation_json, explanation_lines
 from mmplan.explanation.slimming import slimmed
+from mmplan.robot_build import with_arm_limits
 from mmplan.shapes import Box, Capsule, Cylinder, Revolve, Shape, read_only
 from tests.explanation.test_broken_scenes import BROKEN
 from tests.tabletop import SCENE, cup_problem, two_tasks
@@ -58,6 +60,19 @@ def test_paths_are_planned_where_asked_for() -> None:
     (found,) = explain(cup_problem(), paths=True)
     assert found.planned is True
     assert "a verified plan was found" in next(iter(explanation_lines(found)))
+
+
+def test_wider_limits_let_the_arm_reach_more_and_lose_nothing() -> None:
+    robot = cup_problem().robot
+    arm, rng = robot.arm, np.random.default_rng(0)
+    wider = with_arm_limits(robot, arm.lower - 0.3, arm.upper + 0.3)
+    q = np.tile(robot.q_neutral, (300, 1))
+    q[:, arm.indices] = rng.uniform(arm.lower - 0.3, arm.upper + 0.3, (300, len(arm)))
+    T = np.array([robot.tool_pose(row) for row in q])
+    before, after = robot.ik.solve(T).within, wider.ik.solve(T).within
+    assert not np.any(before & ~after)
+    assert after.any(axis=1).all()
+    assert not before.any(axis=1).all()
 
 
 def test_a_cup_wider_than_the_hand_opens_is_told() -> None:
@@ -121,14 +136,19 @@ def _numbers(shape: Shape) -> list[float]:
 
 
 def test_the_command_says_by_its_exit_code_whether_there_is_a_solution(
-    capsys: pytest.CaptureFixture[str],
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    assert main(["explain", str(SCENE), "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
+    page = tmp_path / "miss.html"
+    assert main(["explain", str(SCENE), "--json", "-o", str(page)]) == 0
+    out, err = capsys.readouterr()
+    told = json.loads(out)
     assert told["solvable"] is True
     assert len(told["tasks"]) == 2
-    assert main(["explain", str(BROKEN / "short_floor.yaml")]) == 1
+    assert err == f"mmplan: {page} not written: no miss to draw\n"
+    assert main(["explain", str(BROKEN / "short_floor.yaml"), "-o", str(page)]) == 1
     out, err = capsys.readouterr()
     assert "the arm reaches grasps only from where the base may not go" in out
+    assert out.endswith(f"written to {page}\n")
     assert err == ""
+    assert "leaves the tool" in page.read_text(encoding="utf-8")
     assert main(["explain", "no_such_scene"]) == 2

@@ -11,7 +11,9 @@ from mmplan.collision import CollisionWorld
 from mmplan.explanation.causes import Cause, cause_on_the_way, causes_of
 from mmplan.explanation.evidence import Evidence
 from mmplan.explanation.funnel import Stage, funnel
-from mmplan.explanation.near_miss import NearMiss, nearest_miss
+from mmplan.explanation.near_limit import tightest_joints
+from mmplan.explanation.near_miss import NearMiss
+from mmplan.explanation.nearest import nearest_miss
 from mmplan.explanation.relaxations import Relaxation, Trials, relaxations
 from mmplan.explanation.search import setting_score
 from mmplan.explanation.settings import Setting
@@ -63,18 +65,24 @@ def explain(
     the same explanation.
     """
     return tuple(
-        _explanation(setting, number, seed, rng, paths, relax)
-        for number, (setting, rng) in enumerate(
-            zip(_settings(problem), task_generators(problem, seed), strict=True)
+        _explanation(
+            Setting(one, CollisionWorld.of_problem(one)),
+            number,
+            seed,
+            rng,
+            paths,
+            relax,
+        )
+        for number, (one, rng) in enumerate(
+            zip(single_tasks(problem), task_generators(problem, seed), strict=True)
         )
     )
 
 
-def _settings(problem: Problem) -> Iterator[Setting]:
-    """The problems of the single tasks."""
+def single_tasks(problem: Problem) -> Iterator[Problem]:
+    """The problems of the single tasks, each as the tasks before it leave things."""
     for task in problem.tasks:
-        one = replace(problem, tasks=(task,))
-        yield Setting(one, CollisionWorld.of_problem(one))
+        yield replace(problem, tasks=(task,))
         moved = tuple(
             replace(o, T_world_object=task.T_world_goal) if o.name == task.object else o
             for o in problem.objects
@@ -102,7 +110,9 @@ def _explanation(
     if relax and causes:
         lines = bool(evidence.blocked)
         trials = Trials(setting, seed, lines, paths=planned is False)
-        tried = relaxations(trials, causes[0], _suspects(setting, evidence, causes[0]))
+        suspects = _suspects(setting, evidence, causes[0])
+        joints = _tight_joints(evidence, causes[0])
+        tried = relaxations(trials, causes[0], suspects, joints)
         removed = [name for r in tried if r.solvable for name in r.removed]
         causes = (causes[0].blaming(removed), *causes[1:])
     start, goal = (evidence.collisions(end).pairs() for end in End)
@@ -134,3 +144,10 @@ def _suspects(setting: Setting, evidence: Evidence, cause: Cause) -> list[str]:
     for end in [cause.end] if cause.end is not None else list(End):
         names += [name for name, _ in evidence.collisions(end).culprits()]
     return [name for name in dict.fromkeys(names) if name in known]
+
+
+def _tight_joints(evidence: Evidence, cause: Cause) -> list[str]:
+    """The joints whose limits are in the way, if that is the cause."""
+    if cause.kind != "joint limits" or cause.end is None:
+        return []
+    return tightest_joints(evidence.score, evidence.surveys[cause.end])
