@@ -27,7 +27,7 @@ _MOST_ROUNDS = 12
 # How many candidates are tried for each grasp that is wanted, each round.
 _TRIES = 2.0
 # A new number for each change of the sampling: what caches hold is then made anew.
-_METHOD = 2
+_METHOD = 3
 # The thinnest thing between the fingers that is not noise of the mesh, m.
 _THINNEST = 1e-3
 # Rays begin this far inside the surface, as a share of the hand's opening.

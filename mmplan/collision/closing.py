@@ -23,15 +23,19 @@ CONTACT_DISTANCE = 1e-4
 # Fingers that one drive moves together all touch if they are this near, m, when the
 # first of them does.
 TOGETHER = 1e-3
-# How far the fingers open beyond contact before grasping, as a share of their stroke.
-OPENING_SHARE = 0.2
+# How far the fingers open beyond contact before grasping, as a share of their stroke;
+# the least is for where the object leaves no room for more.
+OPENING_SHARE, LEAST_SHARE = 0.2, 0.02
+# Where the object is in the way of fingers that are as far open as they can be, they
+# start from the widest of so many openings, evenly spaced, at which it is not.
+_OPENINGS = 24
 _MAX_STEPS = 60
 
 
 class Closings(NamedTuple):
     """The hand on n grasps: joint values before and after it closes.
 
-    `touches` says whether every finger touches, having been clear when fully open.
+    `touches` says whether every finger touches, having been clear before.
     """
 
     opened: Array  # (n, hand joints)
@@ -43,8 +47,10 @@ class HandCloser:
     """Closes each finger of a robot's hand on one object by conservative advancement.
 
     A finger moves by its distance to the object over the greatest speed of its points,
-    so that it stops at contact without ever passing it. Before it closes, the hand is
-    open a little wider than at contact, and never wider than it can be.
+    so that it stops at contact without ever passing it. It comes from as far as the
+    hand opens or, where the object is in the way there, as in a bowl whose wall is
+    grasped, from as far as it is not. Before it closes, the hand is open a little wider
+    than at contact, and never wider than that.
     """
 
     def __init__(self, robot: Robot, solids: tuple[Solid, ...]) -> None:
@@ -88,16 +94,18 @@ class HandCloser:
         """Close the hand at tool poses (n, 4, 4) in the object's frame."""
         robot = self._robot
         n = len(T_object_tool)
-        closed = np.tile(robot.hand_open, (n, 1))
+        clear = np.tile(robot.hand_open, (n, 1))
+        closed = clear.copy()
         touches = np.ones(n, dtype=np.bool_)
         for drive in self._fingers.drives:
-            touches &= self._advance(T_object_tool, closed, drive)
+            touches &= self._close(T_object_tool, clear, closed, drive)
         stroke = robot.hand_closed - robot.hand_open
-        past = OPENING_SHARE * np.abs(stroke)
-        opened = closed - np.sign(stroke) * np.minimum(
-            past, np.abs(closed - robot.hand_open)
-        )
-        return Closings(opened, closed, touches)
+        room = np.abs(closed - clear)
+        past = np.minimum(OPENING_SHARE * np.abs(stroke), room)
+        # A hand that is as far open as it can be has room, be it ever so little.
+        tight = (clear != robot.hand_open) & (room < LEAST_SHARE * np.abs(stroke))
+        touches &= ~tight.any(axis=1)
+        return Closings(closed - np.sign(stroke) * past, closed, touches)
 
     def contacts(self, T_object_tool: Array, closings: Closings) -> Contacts:
         """Where the closed fingers touch at tool poses (n, 4, 4), which were closed."""
@@ -107,6 +115,44 @@ class HandCloser:
             for finger in drive.fingers.values()
         ]
         return contacts_of(self._object, placed, closings.touches)
+
+    def _close(
+        self, T_object_tool: Array, clear: Array, closed: Array, drive: Drive
+    ) -> npt.NDArray[np.bool_]:
+        """Move one drive of n hands `closed` to contact, in place; which touch, (n,).
+
+        Those that the object is in the way of from the first start narrower; `clear`
+        is where they start, changed in place.
+        """
+        touching = self._advance(T_object_tool, closed, drive)
+        still = closed[:, drive.place] == self._robot.hand_open[drive.place]
+        blocked = np.flatnonzero(~touching & still)
+        if len(blocked) > 0:
+            T, moved = T_object_tool[blocked], np.array(list(drive.fingers))
+            hand = closed[blocked]
+            self._make_clear(T, hand, drive)
+            clear[np.ix_(blocked, moved)] = hand[:, moved]
+            touching[blocked] = self._advance(T, hand, drive)
+            closed[blocked] = hand
+        return touching
+
+    def _make_clear(self, T_object_tool: Array, hand: Array, drive: Drive) -> None:
+        """Narrow one drive of n opened hands, in place, until it is off the object.
+
+        Left alone where the object is in the way however narrow it is.
+        """
+        robot, own = self._robot, drive.place
+        rows = np.arange(len(hand))
+        for share in np.arange(1, _OPENINGS) / _OPENINGS:
+            tried = hand[rows]
+            tried[:, own] += share * (robot.hand_closed - robot.hand_open)[own]
+            self._fingers.move(tried, np.arange(len(rows)), drive)
+            gaps = self._distances(T_object_tool[rows], tried, drive)
+            off = (gaps > CONTACT_DISTANCE).all(axis=1)
+            hand[rows[off]] = tried[off]
+            rows = rows[~off]
+            if len(rows) == 0:
+                break
 
     def _advance(
         self, T_object_tool: Array, hand: Array, drive: Drive

@@ -38,19 +38,15 @@ class HandRoom:
     ) -> npt.NDArray[np.bool_]:
         """Whether the hand meets nothing on things of some widths (n,), m, (n,).
 
-        At tool poses (n, 4, 4): the palm, and the fingers opened both as far as they
-        can and a little wider than the thing.
+        At tool poses (n, 4, 4): the palm, and the fingers opened a little wider than
+        the thing.
         """
-        robot = self._robot
         free = np.ones(len(T_object_tool), np.bool_)
-        around = hands_open_by(robot, widths + _SPARE)
-        opened = np.broadcast_to(robot.hand_open, around.shape)
+        around = hands_open_by(self._robot, widths + _SPARE)
         fingers = [f for drive in self._fingers.drives for f in drive.fingers.values()]
-        parts = [(self.palm, opened)]
-        parts += [(finger, hand) for finger in fingers for hand in (opened, around)]
-        for part, hand in parts:
+        for part in (self.palm, *fingers):
             rows = np.flatnonzero(free)
-            placed = self._fingers.placed(T_object_tool[rows], hand[rows], part)
+            placed = self._fingers.placed(T_object_tool[rows], around[rows], part)
             for geometry, T in placed:
                 free[rows] &= ~_hits(surface, geometry, T)
         return free
