@@ -52,10 +52,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _joined(arguments: Sequence[str]) -> list[str]:
-    """The arguments with `benchmark report`, the one command of two words, as one."""
-    words = len(benchmark.REPORT)
-    if tuple(arguments[:words]) == benchmark.REPORT:
-        return [" ".join(benchmark.REPORT), *arguments[words:]]
+    """The arguments with commands of two words, as `benchmark report`, as one."""
+    words = tuple(arguments[:2])
+    if words in benchmark.TWO_WORDS:
+        return [" ".join(words), *arguments[2:]]
     return list(arguments)
 
 

@@ -20,6 +20,11 @@ PLANNING = "planning"  # and the proof of what was planned
 STAGES = (IK, COLLISION, DISTANCE, SCORING, OPTIMIZER, PLANNING)
 
 
+def digest(key: tuple[str | int, ...]) -> str:
+    """A key of a store as a number in hexadecimal digits."""
+    return hashlib.sha256(json.dumps(key).encode()).hexdigest()
+
+
 class Key(NamedTuple):
     """What tells one run from every other in the same store."""
 
@@ -33,7 +38,7 @@ class Key(NamedTuple):
     @property
     def digest(self) -> str:
         """The key as a number in hexadecimal digits."""
-        return hashlib.sha256(json.dumps(self).encode()).hexdigest()
+        return digest(self)
 
     def __str__(self) -> str:
         """The key for people."""

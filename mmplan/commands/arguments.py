@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
+from typing import Any
 
 
 def add_json(command: argparse.ArgumentParser) -> None:
@@ -22,3 +24,12 @@ def positive(text: str) -> int:
     if not text.isdecimal() or int(text) == 0:
         raise argparse.ArgumentTypeError(f"expected a whole number > 0, got '{text}'")
     return int(text)
+
+
+def listed(kind: Callable[[str], Any]) -> Callable[[str], list[Any]]:
+    """A reader of what is separated by commas."""
+
+    def read(text: str) -> list[Any]:
+        return [kind(part.strip()) for part in text.split(",")]
+
+    return read

@@ -1,18 +1,19 @@
-"""`mmplan benchmark` and `mmplan benchmark report`: optimizers at equal budgets."""
+"""`mmplan benchmark` and `mmplan benchmark report`: contests, at equal budgets."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from mmplan.commands.arguments import add_json, natural, positive
+from mmplan.commands import benchmark_paths
+from mmplan.commands.arguments import add_json, listed, natural, positive
 from mmplan.commands.results import SOLVED, print_json
 
-# What stands in argv for the one name `benchmark report`.
 REPORT = ("benchmark", "report")
+# What stands in argv for one name each.
+TWO_WORDS = (REPORT, benchmark_paths.PATHS)
 
 
 def add(commands: Any) -> None:
@@ -33,6 +34,7 @@ def add(commands: Any) -> None:
     quiet = "no progress and no result on the terminal"
     run.add_argument("--quiet", action="store_true", help=quiet)
     run.set_defaults(run=_run)
+    benchmark_paths.add(commands)
     _add_report(commands)
 
 
@@ -43,14 +45,14 @@ def _add_contest(run: argparse.ArgumentParser) -> None:
     )
     run.add_argument(
         "--optimizers",
-        type=_names,
+        type=listed(str),
         metavar="NAMES",
         default=["coevolution", "random"],
         help="separated by commas; default: coevolution,random",
     )
     run.add_argument(
         "--evaluations",
-        type=_listed(positive),
+        type=listed(positive),
         metavar="N",
         default=[],
         help="score evaluations, or several budgets separated by commas; default: "
@@ -61,7 +63,7 @@ def _add_contest(run: argparse.ArgumentParser) -> None:
     )
     run.add_argument(
         "--planners",
-        type=_names,
+        type=listed(str),
         metavar="NAMES",
         help="OMPL planners, separated by commas, for --plan; default: RRTConnect",
     )
@@ -112,8 +114,11 @@ def _run(options: argparse.Namespace) -> int:
 
 def _report(options: argparse.Namespace) -> int:
     from mmplan.benchmarking import write_report
+    from mmplan.benchmarking.paths.report import holds_paths
     from mmplan.terminal import show
 
+    if holds_paths(options.folder):
+        return benchmark_paths.show_report(options.folder, as_json=options.json)
     report = write_report(options.folder)
     if options.json:
         print_json(
@@ -131,16 +136,3 @@ def _report(options: argparse.Namespace) -> int:
         short = [table.text() for table in report.tables if not table.detailed]
         show(*short, f"written to {report.page}")
     return SOLVED
-
-
-def _names(text: str) -> list[str]:
-    return _listed(str)(text)
-
-
-def _listed(kind: Callable[[str], Any]) -> Callable[[str], list[Any]]:
-    """A reader of what is separated by commas."""
-
-    def read(text: str) -> list[Any]:
-        return [kind(part.strip()) for part in text.split(",")]
-
-    return read

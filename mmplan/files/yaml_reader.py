@@ -31,7 +31,11 @@ def read_document(path: Path) -> Document:
         InputError: The file cannot be read or is not YAML. Faults of single values
             are kept in the document, for its reader to raise with those it finds.
     """
-    content = _read_bytes(path)
+    return parse_document(path, _read_bytes(path))
+
+
+def parse_document(path: Path, content: bytes) -> Document:
+    """The same of a file whose content is known."""
     text = _decode(path, content)
     lines = tuple(_LINE_BREAK.split(text))
     try:
