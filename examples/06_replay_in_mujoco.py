@@ -5,16 +5,20 @@
     mmplan export plan.json --to mjcf -o scene.xml
     python examples/06_replay_in_mujoco.py plan.json robot.urdf scene.xml
 
-Needs numpy and mujoco. Every 2 ms of the plan MuJoCo says what touches what. The
-replay fails if anything does but the hand, the object and what the object stands on, or
-if the object is not at its goal in the end.
+Needs numpy and mujoco. Every 2 ms of the plan MuJoCo says what touches what, links of
+the robot among themselves included. The replay fails if anything does but the hand, the
+object and what the object stands on, or if the object is not at its goal in the end.
+
+MuJoCo leaves out links that a joint connects, and this program those that overlap
+before the robot moves: neighbours whose bodies are larger than they. MuJoCo takes
+meshes for their convex hulls; a robot whose bodies are hollow may be found to touch.
 """
 
 from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -35,10 +39,12 @@ def main(plan_file: str, urdf_file: str, scene_file: str) -> int:
     segments = [s for task in plan["tasks"] for s in task["segments"]]
     next(replay.run(segments[0]))
     standing = {pair for pair, _ in replay.contacts()}  # base on floor, before it moves
+    neighbours = {pair for pair in standing if replay.links(pair) == set(pair)}
     for segment in segments:
         for _ in replay.run(segment):
             for pair, depth in replay.contacts():
-                if pair not in standing or depth > DEEPEST:
+                rests = pair in standing and depth <= DEEPEST
+                if not rests and pair not in neighbours:
                     contacts[pair] = max(depth, contacts.get(pair, 0.0))
     faults = list(replay.faults(contacts))
     for first, second in sorted(contacts):
@@ -56,8 +62,8 @@ def robot_in_scene(urdf_file: str, scene_file: str) -> mujoco.MjModel:
     robot.compiler.fusestatic = False
     robot.compiler.discardvisual = True
     for body in robot.bodies:
-        for geom in body.geoms:  # meets the scene alone; mmplan has proven the rest
-            geom.contype, geom.conaffinity = 2, 1
+        for geom in body.geoms:  # meets the scene, whose bits are 1, and itself
+            geom.contype, geom.conaffinity = 2, 3
     scene = mujoco.MjSpec.from_file(scene_file)
     robot.compiler.boundmass = robot.compiler.boundinertia = 1e-6
     scene.attach(robot, frame=scene.worldbody.add_frame(), prefix="robot:")
@@ -117,7 +123,7 @@ class Replay:
         """What the plan does and must not: contacts, objects that are elsewhere."""
         hand = self.hand()
         for pair, depth in contacts.items():
-            links = {n for n in pair if n.startswith("robot:")}
+            links = self.links(pair)
             things = {n for n in pair if n in self.objects}
             rests = not links and things and depth <= DEEPEST + 1e-5
             if not (rests or (links and links <= hand and things)):
@@ -128,6 +134,10 @@ class Replay:
             away = float(np.linalg.norm(at - np.array(goal)[:3, 3]))
             if away > GOAL_TOLERANCE:
                 yield f"{name} is {1000 * away:.1f} mm from its goal"
+
+    def links(self, names: Iterable[str]) -> set[str]:
+        """Those of some names that are links of the robot."""
+        return {name for name in names if name.startswith("robot:")}
 
     def hand(self) -> set[str]:
         """The links that the joints of the hand move."""

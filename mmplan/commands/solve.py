@@ -78,7 +78,7 @@ def _show(plan: Plan, problem: Problem, options: argparse.Namespace) -> None:
     if options.html is not None:
         write_page_of(exhibit, options.html)
     if options.view:
-        show_live(exhibit)
+        show_live(exhibit, stdout_is_taken=options.json)
 
 
 def _with_options(problem: Problem, options: argparse.Namespace) -> Problem:

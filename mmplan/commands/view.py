@@ -146,8 +146,13 @@ def exhibit_of(plan: Plan, problem: Problem, name: str) -> Exhibit:
     return exhibit_of_plan(problem, plan)
 
 
-def show_live(exhibit: Exhibit, port: int = _PORT) -> None:
-    """Serve the live viewer until Ctrl-C, which is how it ends well."""
+def show_live(
+    exhibit: Exhibit, port: int = _PORT, *, stdout_is_taken: bool = False
+) -> None:
+    """Serve the live viewer until Ctrl-C, which is how it ends well.
+
+    Its address goes to stdout unless that is taken by other results.
+    """
     try:
         from mmplan.visualization.viewer import Viewer
     except ImportError as error:
@@ -157,7 +162,8 @@ def show_live(exhibit: Exhibit, port: int = _PORT) -> None:
         raise InputError(f"{message}; 'mmplan render -o plan.html' does not") from error
     viewer = Viewer(exhibit, port)
     try:
-        print(viewer.url, flush=True)
+        place = sys.stderr if stdout_is_taken else sys.stdout
+        print(viewer.url, file=place, flush=True)
         print("open this in a browser; Ctrl-C ends", file=sys.stderr)
         viewer.run()
     except KeyboardInterrupt:

@@ -16,6 +16,7 @@ from mmplan.imports.foreign_scene import (
     Triangles,
     only_file,
 )
+from mmplan.mujoco_library import load_mujoco
 from mmplan.shapes import Array
 
 _FLOOR = 20.0  # m, edge of the box that a plane without an end becomes
@@ -29,7 +30,7 @@ def read_mjcf(files: Sequence[Path]) -> ForeignScene:
         InputError: There is more than one file, MuJoCo cannot read it, or MuJoCo is
             not installed.
     """
-    mujoco = _mujoco()
+    mujoco = load_mujoco("models of MuJoCo")
     path = only_file(files, "a model of MuJoCo")
     try:
         model = mujoco.MjModel.from_xml_path(str(path))
@@ -45,16 +46,6 @@ def read_mjcf(files: Sequence[Path]) -> ForeignScene:
         text = f"{path.name}: {model.njnt} joints, held where they start"
         scene.unsupported.append(text)
     return scene
-
-
-def _mujoco() -> ModuleType:
-    try:
-        import mujoco
-    except ImportError:
-        message = "this import needs MuJoCo: pip install 'mmplan[render]'"
-        raise InputError(message) from None
-    module: ModuleType = mujoco
-    return module
 
 
 def _add(

@@ -1,8 +1,7 @@
-"""The one door to MuJoCo: pictures of parts, drawn without a window or a GPU."""
+"""Pictures of parts, drawn by MuJoCo without a window or a GPU."""
 
 from __future__ import annotations
 
-import ctypes.util
 import os
 from collections.abc import Mapping, Sequence
 from types import ModuleType, TracebackType
@@ -12,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from mmplan.exceptions import InputError
+from mmplan.mujoco_library import load_mujoco
 from mmplan.shapes import Array
 from mmplan.visualization.camera import FIELD_OF_VIEW, Camera
 from mmplan.visualization.part import WORLD, Part
@@ -85,24 +85,15 @@ class Studio:
 
 
 def _mujoco() -> ModuleType:
-    """MuJoCo, told to draw without a display unless the user has said how.
+    """MuJoCo, ready to draw.
 
     Raises:
-        InputError: It is not installed, or there is no library for that.
+        InputError: It is not installed, or there is no library to draw with.
     """
+    mujoco = load_mujoco("pictures")
     if not os.environ.get("MUJOCO_GL"):
-        backends = [b for b in ("EGL", "OSMesa") if ctypes.util.find_library(b)]
-        if not backends:
-            raise InputError(_MISSING_GL)
-        os.environ["MUJOCO_GL"] = backends[0].lower()
-    try:
-        import mujoco
-    except ImportError as error:
-        raise InputError(
-            "pictures need the extra: pip install 'mmplan[render]'"
-        ) from error
-    module: ModuleType = mujoco
-    return module
+        raise InputError(_MISSING_GL)
+    return mujoco
 
 
 def _view(mujoco: ModuleType, camera: Camera) -> Any:

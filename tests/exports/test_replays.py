@@ -6,12 +6,15 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from mmplan.cli import main
+from mmplan.collision import CollisionWorld, Scenery
 from mmplan.hermite import HermiteCurve
+from mmplan.robot_build import load_robot
 from tests.exports.conftest import Solved
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -71,18 +74,40 @@ def test_mujoco_agrees_that_the_plan_does_what_it_promises(in_mujoco: Path) -> N
     assert "every object is at its goal" in done.stdout
 
 
+def tampered(folder: Path, name: str, plan: dict[str, Any]) -> Path:
+    """Another folder with a plan that is not mmplan's any more."""
+    (folder / name).mkdir()
+    for file in ("robot.urdf", "scene.xml"):
+        (folder / name / file).write_text((folder / file).read_text())
+    (folder / name / "plan.json").write_text(json.dumps(plan))
+    return folder / name
+
+
 def test_mujoco_finds_fault_with_a_plan_that_was_tampered_with(
     in_mujoco: Path,
 ) -> None:
-    file = in_mujoco / "plan.json"
-    plan = json.loads(file.read_text())
+    plan = json.loads((in_mujoco / "plan.json").read_text())
     for segment in plan["tasks"][0]["segments"]:
         for q in segment["positions"]:
             q[0] += 0.08  # the base stands 8 cm nearer to the table
-    (in_mujoco / "tampered").mkdir()
-    for name in ("robot.urdf", "scene.xml"):
-        (in_mujoco / "tampered" / name).write_text((in_mujoco / name).read_text())
-    (in_mujoco / "tampered" / "plan.json").write_text(json.dumps(plan))
-    done = replay_in_mujoco(in_mujoco / "tampered")
+    done = replay_in_mujoco(tampered(in_mujoco, "nearer", plan))
     assert done.returncode == 1
     assert "FAULT: " in done.stdout
+
+
+def test_mujoco_finds_the_robot_touching_itself(in_mujoco: Path) -> None:
+    plan = json.loads((in_mujoco / "plan.json").read_text())
+    (task,) = plan["tasks"]
+    del task["segments"][1:]
+    (transit,) = task["segments"]
+    robot, rng = load_robot("puma_mobile"), np.random.default_rng(0)
+    world = CollisionWorld(robot, Scenery((), frozenset(), {}), {})
+    q = np.tile(transit["positions"][0], (5000, 1))
+    q[:, robot.arm.indices] = rng.uniform(robot.arm.lower, robot.arm.upper, (5000, 6))
+    touching = q[np.flatnonzero(world.in_collision(q))[0]]
+    transit["positions"][1:] = [touching.tolist()] * (len(transit["times"]) - 1)
+    (contact, *_) = world.contacts(touching)
+    done = replay_in_mujoco(tampered(in_mujoco, "folded", plan))
+    assert done.returncode == 1
+    pair = " touches ".join(sorted(f"robot:{n}" for n in contact[:2]))
+    assert f"FAULT: {pair}: " in done.stdout

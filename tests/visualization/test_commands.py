@@ -30,14 +30,43 @@ def test_the_viewer_serves_this_machine_alone_until_ctrl_c(
     )
     url = process.stdout.readline().strip()
     assert url.startswith("http://127.0.0.1:81")
+    assert_serves(url, process)
+    out, err = ended(process)
+    assert (process.returncode, out) == (0, "")
+    assert err == "open this in a browser; Ctrl-C ends\n"
+
+
+def test_solve_shows_the_plan_and_leaves_stdout_to_its_results(
+    tmp_path: Path,
+) -> None:
+    asked = ("--seed", "3", "--view", "--json", "--quiet")
+    process = subprocess.Popen(
+        [*COMMAND, "solve", str(cup_scene(tmp_path)), *asked],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    url, note = (process.stderr.readline() for _ in range(2))
+    assert url.startswith("http://127.0.0.1:")
+    assert note == "open this in a browser; Ctrl-C ends\n"
+    assert_serves(url.strip(), process)
+    out, err = ended(process)
+    assert (process.returncode, err) == (0, "")
+    assert json.loads(out)["solved"] is True
+
+
+def assert_serves(url: str, process: subprocess.Popen[str]) -> None:
+    """There is a page at that address, and the process listens nowhere else."""
     with urllib.request.urlopen(url, timeout=60) as page:
         assert b"<html" in page.read()
     port = int(url.rpartition(":")[2])
     assert listening(process.pid) == {("0100007F", port)}
+
+
+def ended(process: subprocess.Popen[str]) -> tuple[str, str]:
+    """What is left of stdout and stderr after Ctrl-C."""
     process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    assert (process.returncode, out) == (0, "")
-    assert err == "open this in a browser; Ctrl-C ends\n"
+    return process.communicate(timeout=60)
 
 
 def listening(pid: int) -> set[tuple[str, int]]:

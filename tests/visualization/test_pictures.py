@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ctypes.util
 import os
+import subprocess
+import sys
 from itertools import pairwise
 from pathlib import Path
 
@@ -16,6 +18,7 @@ from mmplan.visualization.camera import best_camera, camera_of, sun_of
 from mmplan.visualization.exhibit import Exhibit, exhibit_of_scene
 from mmplan.visualization.offscreen import Studio
 from mmplan.visualization.pictures import Look, moments_of, write_pictures
+from tests.tabletop import SCENE
 
 SIZE = (160, 100)
 
@@ -153,3 +156,28 @@ def test_the_best_camera_is_not_behind_a_wall(exhibit: Exhibit) -> None:
     # The table is all there is: from anywhere above it everything is in sight.
     camera = best_camera(exhibit)
     assert camera.eye[2] > 0.8
+
+
+# The order decides which part of mmplan imports MuJoCo first.
+@has_gl
+@pytest.mark.parametrize("order", ["import draw", "draw import"])
+def test_models_of_mujoco_are_read_and_pictures_drawn_in_either_order(
+    order: str, tmp_path: Path
+) -> None:
+    model, scene, picture = (tmp_path / n for n in ("box.xml", "s.yaml", "s.png"))
+    model.write_text(
+        '<mujoco><worldbody><geom name="b" type="box" size=".1 .1 .1"/></worldbody>'
+        "</mujoco>"
+    )
+    commands = {
+        "import": ["import", "--from", "mjcf", str(model), "-o", str(scene)],
+        "draw": ["render", str(SCENE), "-o", str(picture), "--size", "64x40"],
+    }
+    lines = [f"assert main({commands[name]!r}) == 0" for name in order.split()]
+    program = "\n".join(["from mmplan.cli import main", *lines])
+    environment = {k: v for k, v in os.environ.items() if k != "MUJOCO_GL"}
+    done = subprocess.run(
+        [sys.executable, "-c", program], env=environment, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    assert pixels(picture).shape == (40, 64, 3)
