@@ -7,13 +7,14 @@ pose of the one in the other.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
 from mmplan.exceptions import InputError
 from mmplan.files.grasp_files import ListedGrasps, Region, read_grasp_file
-from mmplan.grasps import GraspFamily, Mixture, Poses, TaskSpaceRegion
+from mmplan.grasps import GraspFamily, Mixture, Poses, TaskSpaceRegion, regions
 from mmplan.robot import Robot
 from mmplan.shapes import Array
 
@@ -50,6 +51,26 @@ def listed(
     poses = T_object_tool @ np.linalg.inv(T_hand_tool)
     names = tuple(f"grasp_{number}" for number in range(len(poses)))
     return ListedGrasps(poses, qualities, names, hand_frame)
+
+
+def regions_of(grasps: Mapping[str, GraspFamily], T_hand_tool: Array) -> list[Region]:
+    """Families of the tool frame as the task space regions that say the same.
+
+    Raises:
+        InputError: There are none for one of them.
+    """
+    found = []
+    for name, family in grasps.items():
+        parts = regions(family)
+        if parts is None:
+            raise InputError(
+                f"'{name}' is a {type(family).__name__} family, which is no task space "
+                "region; its samples can be saved as isaac_grasp"
+            )
+        for number, part in enumerate(parts):
+            called = name if len(parts) == 1 else f"{name}_{number}"
+            found.append(region(called, part, T_hand_tool))
+    return found
 
 
 def region(name: str, family: TaskSpaceRegion, T_hand_tool: Array) -> Region:

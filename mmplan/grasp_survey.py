@@ -12,10 +12,10 @@ import numpy.typing as npt
 from mmplan.atomic_file import write_whole
 from mmplan.collision import HandCloser, Scenery, hand_size
 from mmplan.exceptions import InputError
-from mmplan.files.grasp_files import isaac_text
+from mmplan.files.grasp_files import isaac_text, regions_text
 from mmplan.files.suggestions import unknown
 from mmplan.grasp_build import default_grasps
-from mmplan.grasp_exchange import listed
+from mmplan.grasp_exchange import listed, regions_of
 from mmplan.grasps import GraspFamily
 from mmplan.optimizers import search_space
 from mmplan.pipeline import score_function
@@ -126,6 +126,15 @@ def save_samples(path: Path, problem: Problem, item: Object, n: int, seed: int) 
     frame = robot.model.frames[robot.tool_frame].name
     hands = [dict(zip(robot.hand.names, q.tolist(), strict=True)) for q in opened]
     write_whole(path, isaac_text(listed(T, quality[best], np.eye(4), frame), hands))
+
+
+def save_regions(path: Path, item: Object) -> None:
+    """Write the families of an object as task space regions of the tool frame.
+
+    Raises:
+        InputError: One of them is none, or the file cannot be written there.
+    """
+    write_whole(path, regions_text(regions_of(item.grasps, np.eye(4))))
 
 
 def opening_of(problem: Problem) -> float:

@@ -42,7 +42,15 @@ def add(commands: Any) -> None:
         "--save",
         type=Path,
         metavar="FILE",
-        help="write the samples that close as an isaac_grasp file, best first",
+        help="write the samples that close, best first, or the families as regions",
+    )
+    grasps.add_argument(
+        "--as",
+        dest="format",
+        choices=("isaac_grasp", "tsr"),
+        default="isaac_grasp",
+        help="what --save writes: samples as isaac_grasp 1.0 (the default), or "
+        "families as task space regions",
     )
     add_json(grasps)
     grasps.set_defaults(run=_grasps)
@@ -54,9 +62,9 @@ def _grasps(options: argparse.Namespace) -> int:
 
     problem = load_problem(options.scene)
     item = object_of(problem, options.object)
-    rows = survey(problem, item, options.samples, options.bases, options.seed)
     if options.save is not None:
         _save(options, problem, item)
+    rows = survey(problem, item, options.samples, options.bases, options.seed)
     if options.json:
         families = [row.to_json() for row in rows]
         opening = opening_of(problem)
@@ -67,8 +75,11 @@ def _grasps(options: argparse.Namespace) -> int:
 
 
 def _save(options: argparse.Namespace, problem: Problem, item: Object) -> None:
-    from mmplan.grasp_survey import save_samples
+    from mmplan.grasp_survey import save_regions, save_samples
 
+    if options.format == "tsr":
+        save_regions(options.save, item)
+        return
     save_samples(options.save, problem, item, options.samples, options.seed)
 
 

@@ -1,6 +1,6 @@
 """Files of grasps made elsewhere: isaac_grasp 1.0 and task space regions, as YAML.
 
-Both speak of a hand frame of their own; `mmplan.grasp_frames` says how it relates to
+Both speak of a hand frame of their own; `mmplan.grasp_exchange` says how it relates to
 the robot's tool frame.
 """
 
@@ -23,7 +23,6 @@ from mmplan.files.yaml_reader import read_document
 from mmplan.files.yaml_writer import Plain, yaml_text
 from mmplan.shapes import Array
 
-FORMATS = ("isaac_grasp", "tsr")
 _ROTATION_TOLERANCE, _NORM_TOLERANCE = 1e-4, 1e-3
 _DIGITS = 9
 

@@ -12,6 +12,7 @@ from mmplan.grasps.family import GraspFamily
 from mmplan.grasps.handle import Handle
 from mmplan.grasps.mixture import Mixture
 from mmplan.grasps.poses import Poses
+from mmplan.grasps.regions import regions
 from mmplan.grasps.rim import Rim
 from mmplan.grasps.sphere import SphereGrasps
 from mmplan.grasps.tsr import TaskSpaceRegion
@@ -29,4 +30,5 @@ __all__ = [
     "Rim",
     "SphereGrasps",
     "TaskSpaceRegion",
+    "regions",
 ]
