@@ -20,7 +20,7 @@ Mask = npt.NDArray[np.bool_]
 
 # Between two checks the object turns by no more than so many rad a metre of the
 # planner's resolution, nor by more than this share of the angle allowed.
-TURN_PER_METRE = 1.0
+TURN_PER_METRE = 3.0
 SHARE_OF_ANGLE = 0.25
 # Newton's method takes no more steps than this, none beyond this many rad.
 STEPS = 12

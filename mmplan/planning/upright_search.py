@@ -29,6 +29,8 @@ STEP = 0.05
 MOST_APART = 2.0
 # What adds less than this share of a step to a tree is not worth adding.
 _LEAST_PROGRESS = 0.5
+# So many configurations are projected and checked at once.
+_AT_ONCE = 8
 # So many random configurations are made at once.
 _DRAWN = 64
 
@@ -141,19 +143,30 @@ class UprightSearch:
         length = float(self.metric.distances(q_to, q_from))
         share = min(1.0, longest / max(length, SAME_STATE))
         steps = max(1, int(np.ceil(share * length / STEP)))
-        straight = q_from + share * np.linspace(0.0, 1.0, steps + 1)[1:, None] * dq
+        path = q_from[None]
+        for first in range(0, steps, _AT_ONCE):
+            k = np.arange(first, min(first + _AT_ONCE, steps)) + 1
+            straight = q_from + share * (k / steps)[:, None] * dq
+            part = self._sound(path[-1], straight, q_from + dq)
+            path = np.vstack([path, part])
+            if len(part) < len(k):
+                break
+        return path[1:]
+
+    def _sound(self, q_from: Array, straight: Array, q_to: Array) -> Array:
+        """The first of the configurations (n, nq), projected, that can be gone along.
+
+        From q_from (nq,) on, nearer and nearer to q_to (nq,).
+        """
         weights = self.metric.weights
         q, obeys = self._rule.project(straight, self._joints, weights)
-        apart = np.linalg.norm(
-            np.diff(q, axis=0, prepend=q_from[None]) * weights, axis=1
-        )
-        left = np.linalg.norm((q - q_from - dq) * weights, axis=1)
-        nearer = np.diff(left, prepend=length) < 0.0
-        sound = obeys & nearer & (apart <= MOST_APART * STEP)
-        path = np.vstack(
-            [q_from, q[: len(q) if sound.all() else int(np.argmin(sound))]]
-        )
-        blocked = self._checker.first_blocked_edge(path) if len(path) > 1 else None
+        steps = np.diff(q, axis=0, prepend=q_from[None]) * weights
+        left = np.linalg.norm((np.vstack([q_from, q]) - q_to) * weights, axis=1)
+        sound = obeys & (np.diff(left) < 0.0)
+        sound &= np.linalg.norm(steps, axis=1) <= MOST_APART * STEP
+        good = len(q) if sound.all() else int(np.argmin(sound))
+        path = np.vstack([q_from, q[:good]])
+        blocked = self._checker.first_blocked_edge(path) if good else None
         return path[1:] if blocked is None else path[1 : blocked[0] + 1]
 
     def _samples(self, q_still: Array) -> Iterator[Array]:
