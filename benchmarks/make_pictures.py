@@ -1,4 +1,4 @@
-"""Make the pictures of README.md and docs/viewing.md, by the commands shown there.
+"""Make the pictures of README.md and of docs/, by the commands shown there.
 
     python benchmarks/make_pictures.py [FOLDER]
 
@@ -38,6 +38,7 @@ GLASS = "265,18,0.95,1.68,0.35,1.02"
 ROOM = "205,33,4.5,0.6,0.0,0.75"
 # A power grasp of the bowl: height on the axis (m) and direction (rad).
 BOWL = (0.17, np.pi)
+BROKEN = Path(__file__).parent.parent / "tests" / "broken"
 
 
 def make(folder: Path) -> None:
@@ -57,6 +58,10 @@ def make(folder: Path) -> None:
     render(glass, folder / "figure_5.webp", *times, *room)
     for plan in plans.values():
         plan.unlink()
+    for name in ("bowl_only", "too_high"):
+        picture = folder / f"miss_{name}.webp"
+        scene = str(BROKEN / f"{name}.yaml")
+        run("explain", scene, "-o", str(picture), "--size", "480x300", fails=True)
 
 
 def render_figure_1(plan: str, folder: Path) -> None:
@@ -112,10 +117,10 @@ def render(subject: str, picture: Path, *options: str) -> None:
     run("render", subject, "-o", str(picture), "--quiet", *options)
 
 
-def run(*arguments: str) -> None:
-    """Run a command of mmplan, and say how."""
+def run(*arguments: str, fails: bool = False) -> None:
+    """Run a command of mmplan, and say how; `fails` if it has to find no plan."""
     print("mmplan", *arguments, flush=True)
-    if main(arguments):
+    if main(arguments) != int(fails):
         sys.exit(1)
 
 

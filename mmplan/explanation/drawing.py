@@ -40,6 +40,7 @@ def exhibit_of_miss(problem: Problem, miss: NearMiss) -> Exhibit:
         world = world.place(task.object, task.T_world_goal)
     q = np.array(miss.q)
     bodies = _bodies(world, q)
+    focus = miss.line or problem.robot.tool_pose(q)[None, :3, 3]
     more = [*_highlighted(world, bodies, miss), *_line(miss)]
     exhibit = exhibit_of_moment(problem, q, world.standing, more)
     hiding = {joint_carrier(world.model.names[j]) for j in _joints(world, miss)}
@@ -47,17 +48,8 @@ def exhibit_of_miss(problem: Problem, miss: NearMiss) -> Exhibit:
         exhibit,
         subtitle=str(miss),
         parts=tuple(_seen_through(part, hiding, miss) for part in exhibit.parts),
-        focus=_focus(world, miss),
+        focus=np.array(focus),
     )
-
-
-def _focus(world: CollisionWorld, miss: NearMiss) -> Array | None:
-    """What to look at, unless the robot is far from the object."""
-    if miss.kind == "overlap":
-        return None if miss.line is None else np.array(miss.line)
-    if miss.kind == "reach":
-        return None
-    return world.robot.tool_pose(np.array(miss.q))[None, :3, 3]
 
 
 def _bodies(world: CollisionWorld, q: Array) -> list[Surface]:
@@ -80,24 +72,14 @@ def _highlighted(
     world: CollisionWorld, surfaces: Sequence[Surface], miss: NearMiss
 ) -> Iterator[Part]:
     """The two things that touch, or what the joint moves that is beyond its limit."""
-    if miss.kind == "overlap":
-        owners = [body.owner for body in world.bodies]
-        groups = [
-            (
-                name,
-                colour,
-                [s for s, o in zip(surfaces, owners, strict=True) if o == name],
-            )
-            for name, colour in ((miss.first, _FIRST), (str(miss.second), _SECOND))
+    moved = _joints(world, miss)
+    for name, colour in ((miss.first, _FIRST), (miss.second, _SECOND)):
+        some = [
+            surface
+            for surface, body in zip(surfaces, world.bodies, strict=True)
+            if (body.owner == name if miss.kind == "overlap" else body.joint in moved)
         ]
-    else:
-        moved = _joints(world, miss)
-        places = [
-            s for s, b in zip(surfaces, world.bodies, strict=True) if b.joint in moved
-        ]
-        groups = [(miss.first, _FIRST, places)]
-    for name, colour, some in groups:
-        if some:
+        if some and name is not None:
             yield Part(f"{name}, highlighted", joined(some), colour, WORLD, MISS)
 
 
