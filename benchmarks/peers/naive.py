@@ -6,7 +6,6 @@ One `pin.computeCollisions` a state, and OMPL's own discrete checks of edges.
 from __future__ import annotations
 
 import time
-from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -14,62 +13,73 @@ from ompl import base as ob
 from ompl import geometric as og
 from ompl import util as ou
 
-
-class NaivePath(NamedTuple):
-    """A path, None if none was found, and the CPU time (s) that it took."""
-
-    path: np.ndarray | None  # (n, nq)
-    seconds: float
-    states: int
+from mmplan.benchmarking.paths.arena import Arena
+from mmplan.benchmarking.paths.records import Answer, Prepared
+from mmplan.shapes import Array
 
 
-class Naive:
-    """The planner for one world: its robot, its geometry, the joints that move."""
+def prepare(arena: Arena, step: float, reach: float, time_limit: float) -> Prepared:
+    """The planner for an arena; `step` between checks, `reach` of edges, both rad."""
+    arena.world.geometry  # noqa: B018  built on first use; not the script's own work
+    begin = time.process_time()
+    naive = _Naive(arena, step, reach, time_limit)
+    return Prepared(naive.plan, time.process_time() - begin)
 
-    def __init__(self, model, geometry, joints, lower, upper, step, reach) -> None:
-        """Prepare; `step` is the resolution and `reach` the longest edge, rad."""
-        self._model, self._data = model, model.createData()
-        self._geometry, self._geometry_data = geometry, geometry.createData()
-        self._joints = joints
-        self._states = 0
-        space = ob.RealVectorStateSpace(len(joints))
-        bounds = ob.RealVectorBounds(len(joints))
-        for i, (low, high) in enumerate(zip(lower, upper, strict=True)):
+
+class _Naive:
+    def __init__(
+        self, arena: Arena, step: float, reach: float, time_limit: float
+    ) -> None:
+        self._model, self._geometry = arena.world.model, arena.world.geometry
+        self._data = self._model.createData()
+        self._geometry_data = self._geometry.createData()
+        self._arena, self._joints = arena, arena.joints.indices
+        self._reach, self._time_limit = reach, time_limit
+        self._q, self._states = arena.q_start.copy(), 0
+        space = ob.RealVectorStateSpace(len(self._joints))
+        bounds = ob.RealVectorBounds(len(self._joints))
+        for i, low in enumerate(arena.joints.lower):
             bounds.setLow(i, float(low))
-            bounds.setHigh(i, float(high))
+            bounds.setHigh(i, float(arena.joints.upper[i]))
         space.setBounds(bounds)
         space.setLongestValidSegmentFraction(step / space.getMaximumExtent())
-        self._space, self._reach = space, reach
+        self._space = space
 
-    def plan(self, q_start, q_goal, time_limit: float, seed: int) -> NaivePath:
-        """Plan by RRTConnect from q_start (nq,) to q_goal (nq,)."""
+    def plan(self, seed: int) -> Answer:
+        """A path by RRTConnect."""
         ou.setLogLevel(ou.LogLevel.LOG_NONE)
-        ou.RNG.setSeed(seed)
-        self._q, self._states = q_start.copy(), 0
+        ou.RNG.setSeed(seed + 1)
+        self._states = 0
         begin = time.process_time()
         si = ob.SpaceInformation(self._space)
         si.setStateValidityChecker(self._is_valid)
         si.setup()
         problem = ob.ProblemDefinition(si)
-        start, goal = si.allocState(), si.allocState()
-        for state, q in ((start, q_start), (goal, q_goal)):
-            for i, value in enumerate(q[self._joints]):
-                state[i] = float(value)
-        problem.setStartAndGoalStates(start, goal)
+        problem.setStartAndGoalStates(
+            self._state(si, self._arena.q_start), self._state(si, self._arena.q_goal)
+        )
         planner = og.RRTConnect(si)
         planner.setRange(self._reach)
         planner.setProblemDefinition(problem)
         planner.setup()
-        planner.solve(time_limit)
+        planner.solve(self._time_limit)
         seconds = time.process_time() - begin
         if not problem.hasExactSolution():
-            return NaivePath(None, seconds, self._states)
+            return Answer(
+                first_seconds=seconds, states=self._states, message="no path in time"
+            )
         states = problem.getSolutionPath().getStates()
-        path = np.tile(q_start, (len(states), 1))
+        path = np.tile(self._arena.q_start, (len(states), 1))
         path[:, self._joints] = [s[0 : len(self._joints)] for s in states]
-        return NaivePath(path, seconds, self._states)
+        return Answer(path, seconds, states=self._states)
 
-    def _is_valid(self, state) -> bool:
+    def _state(self, si: ob.SpaceInformation, q: Array) -> ob.State:
+        state = si.allocState()
+        for i, value in enumerate(q[self._joints]):
+            state[i] = float(value)
+        return state
+
+    def _is_valid(self, state: ob.State) -> bool:
         self._states += 1
         self._q[self._joints] = state[0 : len(self._joints)]
         return not pin.computeCollisions(

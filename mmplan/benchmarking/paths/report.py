@@ -9,7 +9,7 @@ from pathlib import Path
 from mmplan.atomic_file import write_whole
 from mmplan.benchmarking.ompl_format import EXACT, TIMEOUT, Column, Experiment, Planner
 from mmplan.benchmarking.paths.records import STORE_FILE, PathRecord, PathStore
-from mmplan.benchmarking.paths.tables import path_tables
+from mmplan.benchmarking.paths.tables import contender_labels, path_tables
 from mmplan.benchmarking.run_store import ProblemEntry
 from mmplan.benchmarking.table import Table
 from mmplan.exceptions import InputError
@@ -68,7 +68,7 @@ def _logs(
 def _experiment(
     entry: ProblemEntry, family: str, records: Sequence[PathRecord], software: str
 ) -> Experiment[PathRecord]:
-    planners = {(r.planner, r.settings): r for r in records}
+    planners = contender_labels(dict.fromkeys((r.planner, r.settings) for r in records))
     return Experiment(
         name=f"{entry.name}_{family}",
         properties=(),
@@ -80,14 +80,14 @@ def _experiment(
         seconds=sum(_seconds(r) for r in records),
         planners=[
             Planner(
-                label=name,
+                label=label,
                 common={"settings": settings},
                 columns=_COLUMNS,
                 runs=[
                     r for r in records if (r.planner, r.settings) == (name, settings)
                 ],
             )
-            for name, settings in planners
+            for (name, settings), label in planners.items()
         ],
     )
 

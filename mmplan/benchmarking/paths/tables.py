@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
@@ -11,8 +12,8 @@ from mmplan.benchmarking.table import Table
 
 ALL = "all"
 _NOTE = (
-    "Solved: runs that ended with a path. Valid: the verifier proved that neither the "
-    "first path nor the shortened one touches anything at any time. Times: CPU ms to "
+    "Solved: runs that ended with a path. First valid: the verifier proved that the "
+    "first path touches nothing at any time; valid: nor does the shortened one. Times: CPU ms to "
     "the first path and until it was short, median / 95th percentile; a run that found "
     "none counts with the time that it spent. Lengths: medians, in joint space (rad; "
     "prismatic joints in m) and weighted by the joints' lever arms (m). Colliding: "
@@ -40,6 +41,7 @@ def path_tables(records: Sequence[PathRecord]) -> list[Table]:
         "family",
         "contender",
         "solved",
+        "first valid",
         "valid",
         "runs",
         "first path, ms",
@@ -71,11 +73,32 @@ def _of_family(records: Iterable[PathRecord], family: str) -> list[PathRecord]:
 def _by_planner(
     records: Sequence[PathRecord],
 ) -> list[tuple[str, list[PathRecord]]]:
-    names = dict.fromkeys(r.planner for r in records)
-    groups = [(name, [r for r in records if r.planner == name]) for name in names]
+    groups: dict[tuple[str, str], list[PathRecord]] = {}
+    for r in records:
+        groups.setdefault((r.planner, r.settings), []).append(r)
+    labels = contender_labels(groups)
+    named = [(labels[key], runs) for key, runs in groups.items()]
     return sorted(
-        groups, key=lambda g: float(np.median([r.first_seconds for r in g[1]]))
+        named, key=lambda g: float(np.median([r.first_seconds for r in g[1]]))
     )
+
+
+def contender_labels(keys: Iterable[tuple[str, str]]) -> dict[tuple[str, str], str]:
+    """Names of planners with settings (JSON), which are told where they differ."""
+    settings: dict[str, list[dict[str, object]]] = {}
+    keys = list(keys)
+    for planner, text in keys:
+        settings.setdefault(planner, []).append(json.loads(text))
+    labels = {}
+    for planner, text in keys:
+        mine, all_of_them = json.loads(text), settings[planner]
+        told = [
+            f"{name} {value}"
+            for name, value in mine.items()
+            if any(other.get(name) != value for other in all_of_them)
+        ]
+        labels[planner, text] = f"{planner} ({', '.join(told)})" if told else planner
+    return labels
 
 
 def _row(family: str, planner: str, runs: Sequence[PathRecord]) -> tuple[str, ...]:
@@ -83,6 +106,7 @@ def _row(family: str, planner: str, runs: Sequence[PathRecord]) -> tuple[str, ..
         family,
         planner,
         str(sum(r.solved for r in runs)),
+        str(sum(r.valid_first for r in runs)),
         str(sum(r.valid for r in runs)),
         str(len(runs)),
         _times([r.first_seconds for r in runs]),
