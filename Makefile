@@ -31,7 +31,7 @@ format: $(VENV)/.installed-dev
 	$(VENV)/bin/ruff check --fix
 
 docs: $(VENV)/.installed-docs
-	$(VENV)/bin/sphinx-build -W --keep-going -q -c docs -d build/doctrees . build/site
+	$(VENV)/bin/sphinx-build -E -W --keep-going -q -c docs -d build/doctrees . build/site
 	@echo "open build/site/index.html"
 
 bench: $(VENV)/.installed

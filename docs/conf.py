@@ -43,11 +43,13 @@ extensions = [
 html_theme = "furo"
 html_title = f"mmplan {release}"
 html_copy_source = False
+html_static_path = ["site"]
+html_css_files = ["site.css"]
 html_show_sphinx = False
 html_math_renderer = "mathml"
 
 myst_enable_extensions = ["dollarmath"]
-myst_heading_anchors = 3
+myst_heading_anchors = 4
 myst_links_external_new_tab = False
 
 # Docstrings say shapes, units and frames in words; `names` in them are code.
@@ -59,7 +61,7 @@ maximum_signature_line_length = 88
 python_use_unqualified_type_names = True
 napoleon_numpy_docstring = False
 
-# The pages in their order. A page that is in none of these is an error.
+# The pages in their order; other pages of docs/ come last.
 CONTENTS = {
     "Use": (
         "docs/concepts",
@@ -116,9 +118,14 @@ def _add_contents(app: Sphinx, page: str, source: list[str]) -> None:
     """Put the contents at the end of the first page, where they make the sidebar."""
     if page != app.config.root_doc:
         return
-    for caption, pages in CONTENTS.items():
-        listed = "\n".join(pages)
-        source[0] += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n{listed}\n```\n"
+    listed = {page for pages in CONTENTS.values() for page in pages}
+    all_pages = {f"docs/{path.stem}" for path in Path(app.confdir).glob("*.md")}
+    contents = {**CONTENTS, "More": sorted(all_pages - listed)}
+    for caption, pages in contents.items():
+        if not pages:
+            continue
+        lines = "\n".join([":hidden:", f":caption: {caption}", *pages])
+        source[0] += f"\n```{{toctree}}\n{lines}\n```\n"
 
 
 def _add_index(app: Sphinx, error: Exception | None) -> None:
