@@ -1,12 +1,14 @@
 """The paper's Figure 1 as an experiment: the best grasp alone is the wrong one.
 
 A wineglass with two families, `bowl` (a power grasp) and `stem` (a pinch), goes into
-the dishwasher rack. Three ways to choose the grasp, all with the same budget of score
+the dishwasher rack. Four ways to choose the grasp, all with the same budget of score
 evaluations in all and the same score without a grasp term:
 
 - at start: of the grasps that work at the start, the one of the best quality (epsilon);
 - at both ends: the same, but only if it works at the goal as well;
-- co-evolution: grasp and both bases together, by the score.
+- co-evolution: grasp and both bases together, by the score;
+- blockwise: the same with another optimizer and a seventh of the budget, which takes it
+  about as long.
 
 The greedy ways draw grasps and bases at random: first grasps with bases at the start
 until a third of the budget is spent, then, for the grasp of the best quality, bases at
@@ -15,16 +17,24 @@ of the budget. Success means a score above 0 at both ends; scores are means of t
 of both over the successes.
 
     python benchmarks/figure1.py [--seeds 100] [--evaluations 6940]
+
+With scene files the same on other problems, with all grasps that the shape of the
+object suggests: shares of successes over all problems of a family (the name up to the
+first -) and seeds, and scores in percent of the best score found for the problem.
+
+    python benchmarks/figure1.py generated/*.yaml --seeds 5
 """
 
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from mmplan.grasp_build import default_grasps
 from mmplan.grasps import Axis, CylinderSide
 from mmplan.optimizers import OPTIMIZERS, optimize, search_space
 from mmplan.pipeline import score_function
@@ -47,6 +57,15 @@ def figure1_problem() -> Problem:
         "stem": Axis(along=(0.02, 0.09)),
     }
     return replace(problem, objects=(replace(glass, grasps=grasps, mass=0.15),))
+
+
+def generated_problem(scene: str) -> Problem:
+    """The problem of a scene file whose first task's object has its shape's grasps."""
+    problem = load_problem(scene)
+    moved = problem.object(problem.tasks[0].object)
+    item = replace(moved, grasps=default_grasps(moved, problem.robot))
+    others = (o for o in problem.objects if o.name != item.name)
+    return replace(problem, objects=(item, *others), tasks=problem.tasks[:1])
 
 
 def quality(score: ScoreFunction, grasps: Array) -> Array:
@@ -80,8 +99,22 @@ def at_both(score: ScoreFunction, evaluations: int, rng: np.random.Generator) ->
 
 def together(score: ScoreFunction, evaluations: int, rng: np.random.Generator) -> float:
     """Co-evolve grasps and bases; the score of the best candidate or 0."""
+    return by_optimizer("coevolution", score, evaluations, rng)
+
+
+def blockwise(
+    score: ScoreFunction, evaluations: int, rng: np.random.Generator
+) -> float:
+    """Search grasps and bases in blocks, with a seventh of the evaluations."""
+    return by_optimizer("blockwise", score, evaluations // 7, rng)
+
+
+def by_optimizer(
+    name: str, score: ScoreFunction, evaluations: int, rng: np.random.Generator
+) -> float:
+    """The score of the best candidate that an optimizer finds or 0."""
     settings = score.problem.optimizer
-    optimizer = OPTIMIZERS["coevolution"](search_space(score), settings, rng)
+    optimizer = OPTIMIZERS[name](search_space(score), settings, rng)
     found = optimize(score, optimizer, evaluations, 1).candidates
     return found[0].total if found else 0.0
 
@@ -117,28 +150,62 @@ WAYS: dict[str, Callable[[ScoreFunction, int, np.random.Generator], float]] = {
     "best quality at the start": at_start,
     "best quality that works at both ends": at_both,
     "co-evolution": together,
+    "blockwise, a seventh of the evaluations": blockwise,
 }
+
+
+def totals(problem: Problem, seeds: int, evaluations: int) -> Array:
+    """The score or 0 of each way with each seed, (ways, seeds)."""
+    found = [
+        [
+            way(score_function(problem), evaluations, np.random.default_rng(seed))
+            for seed in range(seeds)
+        ]
+        for way in WAYS.values()
+    ]
+    return np.array(found)
+
+
+def show(found: Array, *label: object) -> None:
+    """Print a row for each way, from scores (ways, runs)."""
+    for name, scores in zip(WAYS, found, strict=True):
+        won = scores[scores > 0.0]
+        score = f"{won.mean():.1f} ± {won.std():.1f}" if len(won) else "none"
+        cells = [*label, name, f"{len(won) / len(scores):.0%}", score]
+        print("|", *(f"{cell} |" for cell in cells), flush=True)
+
+
+def by_family(scenes: Sequence[str], seeds: int, evaluations: int) -> None:
+    """Print the table of other problems."""
+    families: dict[str, list[Array]] = {}
+    for scene in scenes:
+        problem = generated_problem(scene)
+        found = totals(problem, seeds, evaluations)
+        print(f"{problem.name}: {(found > 0.0).sum(axis=1)}", file=sys.stderr)
+        best = found.max()
+        share = 100.0 * found / best if best > 0.0 else found
+        families.setdefault(problem.name.partition("-")[0], []).append(share)
+    print("| family | problems | the grasp is chosen by | success | score |")
+    print("|---|---|---|---|---|")
+    for family, shares in families.items():
+        show(np.concatenate(shares, axis=1), family, len(shares))
+    everything = [share for shares in families.values() for share in shares]
+    show(np.concatenate(everything, axis=1), "all", len(everything))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("scenes", nargs="*")
     parser.add_argument("--seeds", type=int, default=100)
     parser.add_argument("--evaluations", type=int, default=6940)
     options = parser.parse_args(arguments)
-    problem = figure1_problem()
+    if options.scenes:
+        by_family(options.scenes, options.seeds, options.evaluations)
+        return
     print("| the grasp is chosen by | success | score, mean ± deviation |")
     print("|---|---|---|")
-    for name, way in WAYS.items():
-        totals = np.array(
-            [
-                way(score_function(problem), options.evaluations, rng)
-                for rng in map(np.random.default_rng, range(options.seeds))
-            ]
-        )
-        won = totals[totals > 0.0]
-        score = f"{won.mean():.1f} ± {won.std():.1f}" if len(won) else "none"
-        print(f"| {name} | {len(won) / len(totals):.0%} | {score} |", flush=True)
+    show(totals(figure1_problem(), options.seeds, options.evaluations))
 
 
 if __name__ == "__main__":

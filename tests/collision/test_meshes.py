@@ -134,6 +134,20 @@ def test_a_flat_mesh(tmp_path: Path) -> None:
     assert_refused(path, "is flat; a closed solid is needed")
 
 
+def test_a_mesh_of_a_million_triangles_is_refused_unread(tmp_path: Path) -> None:
+    """The file is as long as its head says, but has nothing in it."""
+    path, count = tmp_path / "million.stl", 1_000_000
+    with path.open("wb") as file:
+        file.write(bytes(80) + count.to_bytes(4, "little"))
+        file.truncate(84 + 50 * count)
+    refusal = (
+        "has 1,000,000 triangles, and at most 500,000 are taken; simplify it first"
+    )
+    assert_refused(path, refusal)
+    with pytest.raises(InputError, match="has 1,000,000 triangles"):
+        meshes.check_size(Mesh(path), 3.0)
+
+
 def test_a_mesh_that_is_not_finite(tmp_path: Path) -> None:
     vertices = TETRAHEDRON.copy()
     vertices[1, 2] = np.nan
