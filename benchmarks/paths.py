@@ -19,6 +19,7 @@ import sys
 import tempfile
 from collections.abc import Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -33,6 +34,7 @@ from mmplan.benchmarking.paths.benchmark import (
 )
 from mmplan.benchmarking.paths.problems import load_path_problems
 from mmplan.benchmarking.paths.report import write_path_report
+from mmplan.exceptions import MmplanError
 from mmplan.problem import PlannerSettings
 from mmplan.terminal import progress_display
 
@@ -48,6 +50,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = _parser().parse_args(arguments)
     robot = contestant(options.robot)
     settings = PlannerSettings(time_limit=TIME_LIMIT)
+    if options.resolution is not None:
+        settings = replace(settings, resolution=options.resolution)
     competitors = [own_competitor(name, settings) for name in options.planners]
     with (
         ExitStack() as stack,
@@ -80,6 +84,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--runs", type=int, default=20)
     parser.add_argument("--families", type=_names, default=[])
     parser.add_argument("--planners", type=_names, default=["RRTConnect"])
+    parser.add_argument("--resolution", type=float, metavar="M", help="of mmplan's own")
     parser.add_argument("--peers", type=_peers, default=["naive"])
     parser.add_argument(
         "--peer-python",
@@ -122,4 +127,7 @@ def _peer(name: str, python: str, folder: Path, stack: ExitStack) -> Competitor:
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except MmplanError as error:
+        sys.exit(f"paths.py: {error}")

@@ -67,6 +67,9 @@ class Peer:
 def _with_compiler(urdf: str) -> str:
     """The URDF with bodies that stay apart though joints between them are fixed."""
     root = ET.parse(urdf).getroot()
+    for link in root.findall("link"):
+        for inertial in link.findall("inertial"):  # MuJoCo takes no tiny ones
+            link.remove(inertial)
     settings = {
         "fusestatic": "false",
         "strippath": "false",

@@ -13,11 +13,11 @@ from mmplan.benchmarking.table import Table
 ALL = "all"
 _NOTE = (
     "Solved: runs that ended with a path. First valid: the verifier proved that the "
-    "first path touches nothing at any time; valid: nor does the shortened one. Times: CPU ms to "
-    "the first path and until it was short, median / 95th percentile; a run that found "
-    "none counts with the time that it spent. Lengths: medians, in joint space (rad; "
-    "prismatic joints in m) and weighted by the joints' lever arms (m). Colliding: "
-    "first paths that collide when checked again at steps of 1/64 rad."
+    "first path touches nothing at any time; valid: nor does the shortened one. Times: "
+    "CPU ms to the first path and until it was short, median / 95th percentile; a run "
+    "that found none counts with the time that it spent. Lengths: medians, in joint "
+    "space (rad; prismatic joints in m) and weighted by the joints' lever arms (m). "
+    "Colliding: first paths that collide when checked again at steps of 1/64 rad."
 )
 _EFFORT_NOTE = (
     "Medians of what was checked, where the planner tells; the longest step (rad) "
