@@ -103,6 +103,8 @@ def bases_about(
     That is within a distance `span` (m) along x and y; none if that is empty.
     """
     low, high = score.problem.base_bounds.T
+    if len(low) == 0:  # a base without joints has one placement
+        return np.empty((n, 0))
     centre = score.centre_of_mass(end)[:2]
     low, high = np.maximum(low, -np.pi), np.minimum(high, np.pi)
     low[:2] = np.maximum(score.problem.base_bounds[:2, 0], centre - span)

@@ -15,8 +15,10 @@ from mmplan.cli import main
 from mmplan.collision import CollisionWorld, local_bounds
 from mmplan.collision.hand_width import narrowed
 from mmplan.explanation import explain, explanation_json, explanation_lines
+from mmplan.explanation.robot_changes import wider_limits
+from mmplan.explanation.settings import Setting
 from mmplan.explanation.slimming import slimmed
-from mmplan.robot_build import with_arm_limits
+from mmplan.robot_build import load_robot, with_arm_limits
 from mmplan.shapes import Box, Capsule, Cylinder, Revolve, Shape, read_only
 from tests.explanation.test_broken_scenes import BROKEN
 from tests.tabletop import SCENE, cup_problem, two_tasks
@@ -73,6 +75,26 @@ def test_wider_limits_let_the_arm_reach_more_and_lose_nothing() -> None:
     assert not np.any(before & ~after)
     assert after.any(axis=1).all()
     assert not before.any(axis=1).all()
+
+
+def test_limits_of_a_lift_are_lengths_and_those_of_other_joints_angles() -> None:
+    robot = load_robot("tiago")
+    setting = Setting(
+        replace(cup_problem(), robot=robot), CollisionWorld.of_problem(cup_problem())
+    )
+    lift = wider_limits(setting, "torso_lift_joint", 0.1)
+    assert lift.text == "with the limits of `torso_lift_joint` 10 cm wider"
+    assert lift.size == 0.1
+    turn = wider_limits(setting, "arm_1_joint", np.radians(10.0))
+    assert turn.text == "with the limits of `arm_1_joint` 10 degrees wider"
+    assert turn.size == pytest.approx(np.radians(10.0) * robot.reach)
+    changed = turn.apply(setting)
+    assert changed is not None
+    more = changed.problem.robot.arm.upper - robot.arm.upper
+    assert dict(zip(robot.arm.names, more, strict=True)) == {
+        name: pytest.approx(np.radians(10.0) if name == "arm_1_joint" else 0.0)
+        for name in robot.arm.names
+    }
 
 
 def test_a_cup_wider_than_the_hand_opens_is_told() -> None:
