@@ -5,7 +5,7 @@
 The figures are those of D. Berenson, J. Kuffner, H. Choset: "An Optimization Approach
 to Planning for Mobile Manipulation" (2008), with our scenes and our planner. All but
 the first picture of figure 1 come from `mmplan render`; that one shows a grasp that no
-plan has.
+plan has. `_families.py` draws those of grasps.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from _families import draw_families
 from PIL import Image
 
 import mmplan
@@ -58,6 +59,7 @@ def make(folder: Path) -> None:
     render(glass, folder / "figure_5.webp", *times, *room)
     for plan in plans.values():
         plan.unlink()
+    draw_families(folder / "families.webp")
     for name in ("bowl_only", "too_high"):
         picture = folder / f"miss_{name}.webp"
         scene = str(BROKEN / f"{name}.yaml")
