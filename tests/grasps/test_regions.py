@@ -11,30 +11,14 @@ from mmplan.cli import main
 from mmplan.grasp_exchange import family_of_file
 from mmplan.grasps import GraspFamily, Mixture, TaskSpaceRegion, regions
 from mmplan.shapes import Array
-from tests.grasps.test_families import (
-    AXIS,
-    BALL,
-    BAR,
-    BOTTOM,
-    BOX,
-    POSES,
-    REGION,
-    RIM,
-    SIDE,
-    TOP,
-)
+from tests.grasps.test_families import AXIS, BOX
+from tests.grasps.test_families import FAMILIES as EVERY
 from tests.honest import puma
 from tests.tabletop import SCENE
 
+NO_REGIONS = ("rim", "wall", "poses", "mixture", "all")
 FAMILIES: dict[str, GraspFamily] = {
-    "axis": AXIS,
-    "cylinder_side": SIDE,
-    "cylinder_top": TOP,
-    "cylinder_bottom": BOTTOM,
-    "sphere": BALL,
-    "handle": BAR,
-    "box_faces": BOX,
-    "tsr": REGION,
+    **{name: family for name, family in EVERY.items() if name not in NO_REGIONS},
     "mixture": Mixture((AXIS, BOX)),
 }
 NEAR = 1e-7
@@ -69,9 +53,9 @@ def test_regions_hold_the_grasps_of_the_family_and_no_others(name: str) -> None:
     assert not left.any()
 
 
-@pytest.mark.parametrize("family", [POSES, RIM, Mixture((AXIS, RIM))])
-def test_lists_and_rims_are_no_regions(family: GraspFamily) -> None:
-    assert regions(family) is None
+@pytest.mark.parametrize("name", NO_REGIONS)
+def test_lists_and_rims_are_no_regions(name: str) -> None:
+    assert regions(EVERY[name]) is None
 
 
 def test_the_command_saves_regions_that_say_the_same(tmp_path: Path) -> None:
