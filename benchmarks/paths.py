@@ -1,7 +1,8 @@
 """Path planners side by side on problems that others made.
 
-    python benchmarks/paths.py -o results/ [--runs 20] [--peers naive,roboplan,...]
-        [--peer-python roboplan=/path/to/python ...] [--families cage,box]
+    python benchmarks/paths.py [FILE] [-o results/] [--runs 20]
+        [--peers naive,roboplan,...] [--families cage,box]
+        [--peer-python roboplan=/path/to/python ...]
 
 Peers other than `naive` are libraries that need not go together with mmplan's: each
 runs in a process of its own, with the Python given for it or else this one, and tells
@@ -61,17 +62,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
         for name in options.peers:
             python = dict(options.peer_python).get(name, sys.executable)
             competitors.append(_peer(name, python, Path(folder), stack))
+        output = options.output or Path(folder) / "results"
         run_path_benchmark(
             load_path_problems(options.problems),
             robot,
             competitors,
-            options.output,
+            output,
             runs=options.runs,
             families=options.families,
             progress=partial(progress, "runs") if progress is not None else None,
         )
-    for table in write_path_report(options.output).tables:
-        print(table.markdown())
+        for table in write_path_report(output).tables:
+            print(table.markdown())
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -79,7 +81,7 @@ def _parser() -> argparse.ArgumentParser:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("problems", nargs="?", type=Path, default=PROBLEMS)
-    parser.add_argument("-o", "--output", type=Path, default=Path("path_results"))
+    parser.add_argument("-o", "--output", type=Path, help="default: kept nowhere")
     parser.add_argument("--robot", default=PANDA)
     parser.add_argument("--runs", type=int, default=20)
     parser.add_argument("--families", type=_names, default=[])

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mmplan.commands.arguments import add_json, listed, natural, positive
+from mmplan.commands.arguments import above_zero, add_json, listed, natural, positive
 from mmplan.commands.results import SOLVED, print_json
 
 if TYPE_CHECKING:
@@ -68,15 +68,14 @@ def add_choice(run: argparse.ArgumentParser) -> None:
         "--hand",
         type=listed(float),
         metavar="POSITIONS",
-        help="of the hand's joints (m or rad), separated by commas; default: open; "
-        "panda: 0.065, as in the model with which MotionBenchMaker's problems come",
+        help="of the hand's joints (m or rad), separated by commas; default: open",
     )
 
 
 def _add_settings(run: argparse.ArgumentParser) -> None:
     run.add_argument(
         "--resolution",
-        type=float,
+        type=above_zero,
         metavar="M",
         help="the longest way of any point of the robot between two checks; default: "
         "that of scenes",
@@ -89,7 +88,7 @@ def _add_settings(run: argparse.ArgumentParser) -> None:
     )
     run.add_argument(
         "--time-limit",
-        type=float,
+        type=above_zero,
         default=30.0,
         metavar="S",
         help="for one path; default: 30",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sqlite3
 import subprocess
 import sys
 import time
@@ -14,6 +15,7 @@ from mmplan.benchmarking import Record, Store
 from mmplan.benchmarking.store import STORE_FILE, ProblemEntry
 from tests.tabletop import cup_scene
 
+CONVERTER = Path(sys.executable).parent / "ompl_benchmark_statistics"
 COMMAND = (sys.executable, "-m", "mmplan.cli", "benchmark")
 # Populations so small that a few evaluations are several cycles.
 SMALL = "{bases: 6, grasps: 6, partners: 2}"
@@ -163,3 +165,17 @@ def failed(**fields: Any) -> Record:
         "seconds": [1.0],
     }
     return made_up(**{**nothing, **fields})
+
+
+def converted(log: str, folder: Path) -> sqlite3.Connection:
+    """The database that `ompl_benchmark_statistics` makes of a log."""
+    path, database = folder / "benchmark.log", folder / "arena.db"
+    path.write_text(log)
+    done = subprocess.run(
+        [CONVERTER, path, "-d", database], capture_output=True, text=True, check=True
+    )
+    assert "duplicate" not in done.stdout
+    assert done.stderr == ""
+    connection = sqlite3.connect(database)
+    connection.row_factory = sqlite3.Row
+    return connection

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import sqlite3
-import subprocess
-import sys
 from contextlib import closing
 from pathlib import Path
 
@@ -15,24 +13,9 @@ from mmplan.benchmarking import Store, run_benchmark
 from mmplan.benchmarking.contests import Contest, contests
 from mmplan.benchmarking.ompl_log import ompl_log
 from mmplan.benchmarking.records import Record
-from tests.benchmarking.made import contest_scene, entry, failed, made_up
+from tests.benchmarking.made import contest_scene, converted, entry, failed, made_up
 
-CONVERTER = Path(sys.executable).parent / "ompl_benchmark_statistics"
 BUDGET = 150
-
-
-def converted(log: str, folder: Path) -> sqlite3.Connection:
-    """The database that `ompl_benchmark_statistics` makes of a log."""
-    path, database = folder / "benchmark.log", folder / "arena.db"
-    path.write_text(log)
-    done = subprocess.run(
-        [CONVERTER, path, "-d", database], capture_output=True, text=True, check=True
-    )
-    assert "duplicate" not in done.stdout
-    assert done.stderr == ""
-    connection = sqlite3.connect(database)
-    connection.row_factory = sqlite3.Row
-    return connection
 
 
 @pytest.fixture(scope="module")

@@ -17,11 +17,8 @@ from mmplan.robot import JointGroup, Robot
 from mmplan.robot_build import load_robot
 from mmplan.shapes import Array, read_only
 
-# The robot of MotionBenchMaker's problems, and how far its hand is open (m a finger).
-# That is what VAMP's model has, with which the problems come; at 0.04, the most that
-# the real hand can do, the fingers collide with a cube at 6 of the 70 goals.
+# The robot of MotionBenchMaker's problems.
 PANDA = "panda"
-PANDA_HAND = (0.065,)
 _PANDA_FILE = Path(__file__).with_name("panda.yaml")
 
 # How far (m) a base may go beyond its start and its goal.
@@ -62,11 +59,10 @@ def contestant(
     Raises:
         InputError: There is no such robot, or the hand has more or fewer joints.
     """
-    is_panda = str(name) == PANDA
-    robot = load_robot(_PANDA_FILE if is_panda else name)
+    robot = load_robot(_PANDA_FILE if str(name) == PANDA else name)
     leads = robot.hand.leads
     if hand is None:
-        hand = PANDA_HAND if is_panda else robot.hand_open[leads].tolist()
+        hand = robot.hand_open[leads].tolist()
     if len(hand) != int(leads.sum()):
         raise InputError(
             f"the hand of {robot.name} has {int(leads.sum())} joints; got {len(hand)} "

@@ -10,6 +10,7 @@ import gzip
 import hashlib
 import json
 import zlib
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
@@ -21,7 +22,7 @@ from mmplan.exceptions import Diagnostic, InputError
 from mmplan.files.document import Document, Fault, Value, dotted
 from mmplan.files.faults import validate
 from mmplan.files.section import Metres, Section, Size, fault, fault_at
-from mmplan.files.yaml_reader import parse_document
+from mmplan.files.yaml_reader import LARGEST_FILE, parse_document
 from mmplan.problem import Obstacle
 from mmplan.shapes import Array, Box, Cylinder, Shape, Sphere, read_only
 
@@ -107,7 +108,7 @@ class ProblemSection(Section):
 
 
 class _FileSection(Section):
-    families: Annotated[dict[str, tuple[ProblemSection, ...]], Field(min_length=1)]
+    families: dict[str, tuple[ProblemSection, ...]]
 
 
 def load_path_problems(path: Path) -> PathProblems:
@@ -162,6 +163,9 @@ def _validated(path: Path, content: bytes) -> _FileSection:
     except (UnicodeDecodeError, RecursionError) as error:
         message = f"not JSON: {error}"
         raise InputError(Diagnostic(message, file=str(path))) from None
+    if not isinstance(data, dict) or not data:
+        message = "expected families of problems: keys with lists"
+        raise InputError(Diagnostic(message, file=str(path)))
     document = Document(path, content, (), {"families": data}, {}, {})
     section, faults = validate(_FileSection, document)
     if section is None:
@@ -172,11 +176,11 @@ def _validated(path: Path, content: bytes) -> _FileSection:
 def _located(path: Path, content: bytes, faults: tuple[Fault, ...]) -> InputError:
     """An error of all faults, with their places in the file where it is not huge."""
     faults = tuple(f._replace(path=f.path[1:]) for f in faults)
-    try:
-        return parse_document(path, content).error(faults)
-    except InputError:
-        messages = [f"{dotted(f.path)}: {f.message}" for f in faults]
-        return InputError(*(Diagnostic(m, file=str(path)) for m in messages))
+    with suppress(InputError):  # what YAML cannot hold
+        if len(content) <= LARGEST_FILE:
+            return parse_document(path, content).error(faults)
+    messages = [f"{dotted(f.path)}: {f.message}" for f in faults]
+    return InputError(*(Diagnostic(m, file=str(path)) for m in messages))
 
 
 def _frozen(data: Any) -> Value:
