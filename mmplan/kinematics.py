@@ -29,6 +29,19 @@ class ForwardKinematics:
         bases = [_motion_basis(model, j) for j in joints]
         self._basis = np.array(bases).reshape(len(bases), 4, 16)
 
+    @property
+    def basis(self) -> Array:
+        """The four matrices of each joint but for their last rows, (joints, 4, 3, 4).
+
+        The factors of 1, sin q, cos q and q in its pose in its parent's frame.
+        """
+        return np.ascontiguousarray(self._basis.reshape(-1, 4, 4, 4)[:, :, :3])
+
+    @property
+    def tree(self) -> npt.NDArray[np.int64]:
+        """Parent and place in q of each joint, (2, joints)."""
+        return np.array([self._parents, self._places], dtype=np.int64).reshape(2, -1)
+
     def __call__(self, q: Array) -> Array:
         """Poses T_world_joint (n, njoints, 4, 4) at q (n, nq); joint 0 is the world."""
         values = q[:, self._places].T  # (joints, n)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from mmplan.carry import Carry
 
@@ -121,10 +121,12 @@ class PlannerSettings:
     Planning is bounded by `iterations` (of the planner, for one path) and `candidates`
     (how many distinct goals of the optimizer are tried), so that one seed gives one
     plan; `time_limit` (s, for one path) is the safety net. `resolution` (m) is the
-    longest way that any point of the robot moves between two collision checks.
+    longest way that any point of the robot moves between two collision checks; a
+    `continuous` motion check finds what touches between these as well.
     Paths keep `clearance` (m) from all that their ends are not nearer to already.
     `shortcuts` is the number of attempts at shortening a path. `base_weight` is how
     much more a way of the base counts in a path's length than the same way of the arm.
+    With `torque` motions keep within the limits of the arm's torques.
     """
 
     name: str = "RRTConnect"
@@ -135,6 +137,9 @@ class PlannerSettings:
     clearance: float = 0.002
     shortcuts: int = 100
     base_weight: float = 1.0
+    torque: bool = False
+    range: float = 1.5
+    motion_check: Literal["sampled", "continuous"] = "sampled"
 
 
 @dataclass(frozen=True, eq=False)

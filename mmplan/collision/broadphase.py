@@ -11,30 +11,24 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from mmplan.collision.assembly import Body
+from mmplan.collision.bisection import coarse_to_fine
 from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
+from mmplan.collision.clear_cells import ClearCells
 from mmplan.collision.groups import Groups
+from mmplan.collision.pairs import Flags, Indices, Stretch, Suspects
 from mmplan.kinematics import ForwardKinematics
 from mmplan.shapes import Array
-
-Indices = npt.NDArray[np.int64]
-Mask = npt.NDArray[np.bool_]
 
 # Added to all bounds so that rounding never hides a touch, m.
 _PADDING = 1e-6
 # Configurations looked at in one go: few at first where a hit among them may be enough,
 # and not so many that the arrays leave the cache.
 _FIRST_CHUNK, _LAST_CHUNK = 16, 256
-
-
-class Suspects(NamedTuple):
-    """Pairs whose bounds overlap: pair `pair[k]` in configuration `row[k]`, by row."""
-
-    row: Indices
-    pair: Indices
+# Motions are cut into stretches on whose halves bodies move no farther than this, m.
+_REACH = 0.01
 
 
 class _SelfPairs(NamedTuple):
@@ -57,13 +51,16 @@ class Broadphase:
         geometry: pin.GeometryModel,
         bodies: Sequence[Body],
         pairs: Indices,
+        levers: Array,
         margin: float = 0.0,
     ) -> None:
         """Bound every body; `pairs` (p, 2) are indices into `bodies`.
 
-        Bodies nearer than `margin` (m) count as touching.
+        `levers` (p, nq) are those of `pair_levers`. Bodies nearer than `margin` (m)
+        count as touching.
         """
         self._kinematics = ForwardKinematics(model)
+        self._levers = levers
         paired = sorted(
             set(pairs.ravel().tolist()), key=lambda i: _group_key(bodies[i])
         )
@@ -82,31 +79,71 @@ class Broadphase:
         self._watched = self._links.any_of(watched.T).T  # (links, owners)
         self._self_pairs = _self_pairs(moving, pairs, self._links)
 
-    def suspects(self, q: Array, *, hasty: bool = False) -> Iterator[Suspects]:
-        """The pairs that may touch at configurations q (n, nq), in batches by row.
+    def suspects(self, q: Array) -> Iterator[Suspects]:
+        """The pairs that may touch at configurations q (n, nq), in batches by row."""
+        return self._batches(q, _LAST_CHUNK)
 
-        A `hasty` search starts with few configurations, for whom one hit is enough.
+    def likeliest(self, q: Array) -> Iterator[tuple[int, int]]:
+        """Configuration and pair of each that may touch.
+
+        For whom one hit is enough: it begins with few configurations of all (n, nq).
         """
-        start, size = 0, _FIRST_CHUNK if hasty else _LAST_CHUNK
+        for rows, pairs in self._batches(q, _FIRST_CHUNK):
+            yield from zip(rows.tolist(), pairs.tolist(), strict=True)
+
+    def suspects_at(self, T_world_joint: Array) -> Iterator[Suspects]:
+        """The same as `suspects`, from poses (n, njoints, 4, 4) of all joints."""
+        return self._of_poses(T_world_joint, 0.0)
+
+    def on_steps(self, q: Array, dq: Array, steps: int) -> Iterator[tuple[int, int]]:
+        """Step and pair of each that may touch on the way.
+
+        At q + k / steps · dq (nq,), k = 1, ..., steps.
+        """
+        order = coarse_to_fine(steps)
+        for row, pair in self.likeliest(q + order / steps * dq):
+            yield int(order[row, 0]), pair
+
+    def on_the_way(self, q: Array, dq: Array) -> list[Stretch]:
+        """Where pairs may touch on the way from q (nq,) to q + dq.
+
+        Of pairs that are not in the list nothing touches anywhere on the way.
+        """
+        way = float(np.max(self._levers @ np.abs(dq), initial=0.0))
+        steps = max(1, int(np.ceil(way / (2.0 * _REACH))))
+        middles = q + (np.arange(steps)[:, None] + 0.5) / steps * dq
+        found = self._of_poses(self._kinematics(middles), way / (2.0 * steps))
+        return [
+            Stretch(pair, row / steps, (row + 1) / steps)
+            for rows, pairs in found
+            for row, pair in zip(rows.tolist(), pairs.tolist(), strict=True)
+        ]
+
+    def learn(self, pair: int, known: ClearCells) -> None:
+        """Nothing: here looking it up would take longer than coal."""
+
+    def _batches(self, q: Array, size: int) -> Iterator[Suspects]:
+        start = 0
         while start < len(q):
             T = self._kinematics(q[start : start + size])
             for row, pair in self.suspects_at(T):
                 yield Suspects(row + start, pair)
             start, size = start + size, min(4 * size, _LAST_CHUNK)
 
-    def suspects_at(self, T: Array) -> Iterator[Suspects]:
-        """The pairs that may touch, from poses (n, njoints, 4, 4) of all joints."""
+    def _of_poses(self, T: Array, reach: float) -> Iterator[Suspects]:
+        """Pairs whose bounds come within a reach (m) of each other."""
         links = moved_bounds(self._link_bounds, T[:, self._link_joints])
-        yield self._with_static(T, links)
-        yield self._among_moving(T, links)
+        links = Bounds(links.centre, links.half + reach)
+        yield self._with_static(T, links, reach)
+        yield self._among_moving(T, links, reach)
 
-    def _with_static(self, T: Array, links: Bounds) -> Suspects:
+    def _with_static(self, T: Array, links: Bounds, reach: float) -> Suspects:
         """Link against owner, then body against owner, then body against body."""
         near = _overlap(_each(links), self._owner_bounds) & self._watched
         row, link, owner = np.nonzero(near)
         repeat, body = self._links.members(link)
         row, owner = row[repeat], owner[repeat]
-        bounds = self._bounds(T, row, body)
+        bounds = self._bounds(T, row, body, reach)
         close = _overlap(bounds, _taken(self._owner_bounds, owner))
         row, body, owner = row[close], body[close], owner[close]
         bounds = _taken(bounds, close)
@@ -116,7 +153,7 @@ class Broadphase:
         touching &= pair >= 0
         return Suspects(row[repeat][touching], pair[touching])
 
-    def _among_moving(self, T: Array, links: Bounds) -> Suspects:
+    def _among_moving(self, T: Array, links: Bounds, reach: float) -> Suspects:
         """Link against link, then body against body."""
         pairs = self._self_pairs
         first, second = (
@@ -126,14 +163,15 @@ class Broadphase:
         row, both = np.nonzero(_overlap(first, second))
         repeat, which = pairs.by_links.members(both)
         row = row[repeat]
-        one = self._bounds(T, row, pairs.first[which])
-        other = self._bounds(T, row, pairs.second[which])
+        one = self._bounds(T, row, pairs.first[which], reach)
+        other = self._bounds(T, row, pairs.second[which], reach)
         touching = _overlap(one, other)
         return Suspects(row[touching], pairs.pair[which[touching]])
 
-    def _bounds(self, T: Array, row: Indices, body: Indices) -> Bounds:
-        """Bounds (k, 3) of moving bodies, each in one configuration."""
-        return moved_bounds(_taken(self._bodies, body), T[row, self._joints[body]])
+    def _bounds(self, T: Array, row: Indices, body: Indices, reach: float) -> Bounds:
+        """Bounds (k, 3) of moving bodies, grown by a reach, each where it is."""
+        at = moved_bounds(_taken(self._bodies, body), T[row, self._joints[body]])
+        return Bounds(at.centre, at.half + reach)
 
 
 def _group_key(body: Body) -> tuple[str, int]:
@@ -145,18 +183,18 @@ def _each(bounds: Bounds) -> Bounds:
     return Bounds(bounds.centre[:, :, None], bounds.half[:, :, None])
 
 
-def _taken(bounds: Bounds, which: Indices | Mask) -> Bounds:
+def _taken(bounds: Bounds, which: Indices | Flags) -> Bounds:
     return Bounds(bounds.centre[which], bounds.half[which])
 
 
-def _overlap(a: Bounds, b: Bounds) -> Mask:
+def _overlap(a: Bounds, b: Bounds) -> Flags:
     """Whether boxes overlap, broadcast over all but the last axis."""
     x, y, z = (
         np.abs(a.centre[..., axis] - b.centre[..., axis])
         <= a.half[..., axis] + b.half[..., axis]
         for axis in range(3)
     )
-    overlap: Mask = x & y & z
+    overlap: Flags = x & y & z
     return overlap
 
 

@@ -1,29 +1,49 @@
-"""Boolean collision checks of many configurations at once."""
+"""Collision checks of many configurations at once, and of whole motions."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from mmplan.collision.assembly import Assembly
-from mmplan.collision.broadphase import Broadphase, Suspects
-from mmplan.collision.requests import make_exact
+from mmplan.collision.assembly import Assembly, Body
+from mmplan.collision.broadphase import Broadphase
+from mmplan.collision.clear_cells import clear_cells
+from mmplan.collision.levers import pair_levers
+from mmplan.collision.pairs import Indices, Stretch, Suspects
+from mmplan.collision.requests import TOUCH, make_exact
+from mmplan.robot import Robot
 from mmplan.shapes import Array
+
+if TYPE_CHECKING:
+    from mmplan.collision.compiled_broadphase import CompiledBroadphase
+
+# A pair of the robot's own bodies that was apart so often gets a table, see
+# `clear_cells`.
+_OFTEN = 1000
+# Pairs that come so near to what is allowed that nothing is settled within a stretch
+# on which they move no farther than this count as colliding, m.
+_SMALLEST = 1e-5
 
 
 class Checker:
-    """Checks the pairs of one geometry model: bounds in numpy, what is left in coal.
+    """Checks the pairs of one geometry model: bounds first, what is left in coal.
 
     Pinocchio's functions do not see later changes of a geometry model, so a checker is
     made once the model is final.
     """
 
-    def __init__(self, model: pin.Model, assembly: Assembly) -> None:
+    def __init__(self, robot: Robot, assembly: Assembly) -> None:
         """Prepare the checks."""
-        self._model = model
+        self._robot = robot
+        self._model = model = robot.model
+        self._pairs = assembly.pairs
+        self._levers = pair_levers(model, assembly.geometry, assembly.pairs)
+        self._allowed_depth = assembly.allowed_depth.tolist()
         self._geometry = assembly.geometry
         self._data = model.createData()
         self._geometry_data = self._geometry.createData()
@@ -31,9 +51,17 @@ class Checker:
         joints = {assembly.bodies[i].joint for i in assembly.pairs.ravel().tolist()}
         self._moving = sorted(joints - {0})
         margin = max(0.0, -float(np.min(assembly.allowed_depth, initial=0.0)))
-        self._broadphase = Broadphase(
-            model, self._geometry, assembly.bodies, assembly.pairs, margin
+        self._broadphase = make_broadphase(
+            model,
+            self._geometry,
+            assembly.bodies,
+            assembly.pairs,
+            self._levers,
+            margin,
         )
+        # How often each pair of the robot's own bodies was apart; others never count.
+        own = (assembly.pairs < robot.geometry.ngeoms).all(axis=1)
+        self._apart = np.where(own, 0, np.iinfo(np.int64).min).tolist()
 
     def in_collision(self, q: Array) -> npt.NDArray[np.bool_]:
         """Which of the configurations (n, nq) are in collision, (n,)."""
@@ -55,24 +83,64 @@ class Checker:
 
     def any_collision(self, q: Array) -> bool:
         """Whether any of the configurations (n, nq) is in collision."""
-        return any(self._collides(pair) for _, pair in self._suspects(q))
+        return any(self._collides(pair) for pair in self._suspects(q))
+
+    def steps_collide(self, q: Array, dq: Array, steps: int) -> bool:
+        """Whether any of q + k / steps · dq (nq,), k = 1, ..., steps, collides."""
+        placed = -1
+        for k, pair in self._broadphase.on_steps(q, dq, steps):
+            if k != placed:
+                self._place(q + (k / steps) * dq)
+                placed = k
+            if self._collides(pair):
+                return True
+        return False
+
+    def motion_collides(self, q: Array, dq: Array) -> bool:
+        """Whether anything collides on the way from q (nq,) to q + dq."""
+        stretches = self._broadphase.on_the_way(q, dq)
+        return bool(stretches) and not self._stay_apart(q, dq, stretches)
+
+    def _stay_apart(self, q: Array, dq: Array, stretches: list[Stretch]) -> bool:
+        """Whether pairs stay apart in stretches of a motion.
+
+        By their distance in the middle a pair stays apart until the joints can have
+        carried the bodies so far (Schwarzer, Saha, Latombe, 2005); what is not settled
+        by that is looked at in turn.
+        """
+        ways = (self._levers @ np.abs(dq)).tolist()
+        while stretches:
+            pair, start, end = stretches.pop(0)
+            middle, way = (start + end) / 2.0, ways[pair]
+            self._place(q + middle * dq)
+            found = pin.computeDistance(self._geometry, self._geometry_data, pair)
+            gap = found.min_distance + self._allowed_depth[pair] - TOUCH
+            if gap <= 0.0:
+                return False
+            free = gap / way if way > 0.0 else 1.0
+            if middle - free <= start:
+                continue
+            if (end - start) * way <= _SMALLEST:
+                return False
+            stretches.append(Stretch(pair, start, middle - free))
+            stretches.append(Stretch(pair, middle + free, end))
+        return True
 
     def overlaps(self, q: Array) -> Iterator[tuple[int, float]]:
         """Pairs that collide at q (nq,): index and depth (m)."""
-        for _, pair in self._suspects(np.asarray(q)[None]):
+        for pair in self._suspects(np.asarray(q)[None]):
             if self._collides(pair):
                 found = pin.computeDistance(self._geometry, self._geometry_data, pair)
                 yield pair, max(0.0, -float(found.min_distance))
 
-    def _suspects(self, q: Array) -> Iterator[tuple[int, int]]:
-        """Configuration and pair, with the bodies placed in that configuration."""
+    def _suspects(self, q: Array) -> Iterator[int]:
+        """Pairs that may touch, with the bodies placed where they may."""
         placed = -1
-        for rows, pairs in self._broadphase.suspects(q, hasty=True):
-            for row, pair in zip(rows.tolist(), pairs.tolist(), strict=True):
-                if row != placed:
-                    self._place(q[row])
-                    placed = row
-                yield row, pair
+        for row, pair in self._broadphase.likeliest(q):
+            if row != placed:
+                self._place(q[row])
+                placed = row
+            yield pair
 
     def _place(self, q: Array) -> None:
         pin.updateGeometryPlacements(
@@ -87,7 +155,34 @@ class Checker:
         )
 
     def _collides(self, pair: int) -> bool:
-        return bool(pin.computeCollision(self._geometry, self._geometry_data, pair))
+        hit = bool(pin.computeCollision(self._geometry, self._geometry_data, pair))
+        if not hit:
+            self._apart[pair] += 1
+            if self._apart[pair] == _OFTEN:
+                known = clear_cells(self._robot, *self._pairs[pair].tolist())
+                if known is not None:
+                    self._broadphase.learn(pair, known)
+        return hit
+
+
+def make_broadphase(
+    model: pin.Model,
+    geometry: pin.GeometryModel,
+    bodies: Sequence[Body],
+    pairs: Indices,
+    levers: Array,
+    margin: float = 0.0,
+) -> Broadphase | CompiledBroadphase:
+    """The compiled broadphase where numba is installed, else the one in numpy.
+
+    See their constructors.
+    """
+    kind: type[Broadphase | CompiledBroadphase] = Broadphase
+    if find_spec("numba") is not None:
+        from mmplan.collision.compiled_broadphase import CompiledBroadphase
+
+        kind = CompiledBroadphase
+    return kind(model, geometry, bodies, pairs, levers, margin)
 
 
 def _by_row(

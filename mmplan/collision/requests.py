@@ -13,6 +13,8 @@ from mmplan.shapes import Array
 # Where coal stops to improve distances, m: those of round bodies may come out about
 # twice as much too large. For scores, and for proofs.
 SCORE_TOLERANCE, PROOF_TOLERANCE = 1e-6, 1e-9
+# Bodies nearer than this touch, m: twice what GJK leaves open in a yes or no.
+TOUCH = 2e-6
 
 
 def make_exact(data: pin.GeometryData, allowed_depth: Array | None = None) -> None:
@@ -31,10 +33,19 @@ def make_exact(data: pin.GeometryData, allowed_depth: Array | None = None) -> No
 
 
 def collision_request(allowed_depth: float) -> coal.CollisionRequest:
-    """A request that lets overlaps pass down to a depth (m)."""
+    """A request for yes or no that lets overlaps pass down to a depth (m).
+
+    Without contacts coal answers three times as quickly. It then takes what its GJK
+    ends on for the distance, which is up to 1 um above 0 even for bodies that overlap
+    deeply: hence a margin of `TOUCH`.
+    """
     request = coal.CollisionRequest()
     _forget(request)
-    request.security_margin = -allowed_depth
+    depth_counts = allowed_depth > 0.0
+    request.enable_contact = depth_counts
+    request.security_margin = (
+        -allowed_depth if depth_counts else max(TOUCH, -allowed_depth)
+    )
     return request
 
 

@@ -196,6 +196,14 @@ class CollisionWorld:
         """Whether any of the configurations (n, nq) is in collision."""
         return self._checker.any_collision(q)
 
+    def steps_collide(self, q: Array, dq: Array, steps: int) -> bool:
+        """Whether any of q + k / steps · dq (nq,), k = 1, ..., steps, collides."""
+        return self._checker.steps_collide(q, dq, steps)
+
+    def motion_collides(self, q: Array, dq: Array) -> bool:
+        """Whether anything collides anywhere on the way from q (nq,) to q + dq."""
+        return self._checker.motion_collides(q, dq)
+
     def contacts(self, q: Array) -> tuple[Contact, ...]:
         """What overlaps more than it may at one configuration (nq,), deepest first."""
         depths: dict[tuple[str, str], float] = {}
@@ -227,7 +235,7 @@ class CollisionWorld:
 
     @cached_property
     def _checker(self) -> Checker:
-        return Checker(self.model, self._assembly)
+        return Checker(self.robot, self._assembly)
 
 
 def _spare_the_arm(first: Body, second: Body) -> bool:

@@ -23,6 +23,7 @@ OptimizerName = Literal[
     "differential_evolution",
     "nevergrad",
 ]
+MotionCheck = Literal["sampled", "continuous"]
 PlannerName = Literal[
     "AORRTC",
     "BFMT",
@@ -124,6 +125,8 @@ class PlannerSection(Section):
     """Attempts at shortening a path."""
     base_weight: Annotated[float, Field(ge=0.01, le=100)] = PlannerSettings.base_weight
     """How much more a way of the base counts than the same way of the arm."""
+    torque: bool = PlannerSettings.torque
+    """Whether motions keep the effort limits of the arm, with what it carries."""
 
     def settings(self) -> PlannerSettings:
         """The problem's value."""

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
+from mmplan.collision import coarse_to_fine
 from mmplan.planning.sweep import sweep_of
-from mmplan.planning.world import PlanningWorld
-from mmplan.shapes import Array, read_only
+from mmplan.planning.world import PlanningWorld, moving_part
+from mmplan.shapes import Array
 
 
 class PathChecker:
@@ -18,12 +18,23 @@ class PathChecker:
 
     An edge is a straight line between two configurations. It is checked at so many
     configurations that no point of the robot, nor of what it carries, moves more than
-    `resolution` (m) from one to the next.
+    `resolution` (m) from one to the next; with `continuous` collisions between them are
+    found as well.
     """
 
-    def __init__(self, world: PlanningWorld, resolution: float) -> None:
-        """Compute the lever arms of the robot as it is in this world."""
+    def __init__(
+        self, world: PlanningWorld, resolution: float, *, continuous: bool = False
+    ) -> None:
+        """Compute the lever arms of the robot as it is in this world.
+
+        Raises:
+            ValueError: if motions of this world cannot be checked continuously.
+        """
         self.world = world
+        self._moving = moving_part(world)
+        if continuous and self._moving is None:
+            raise ValueError("this world is checked at single configurations only")
+        self._continuous = continuous
         self.resolution = resolution
         self.sweep = sweep_of(world)
         self.states = 0
@@ -44,7 +55,19 @@ class PathChecker:
         """Whether an edge is free of collision, its first end taken as checked."""
         dq = q_to - q_from
         self.edges += 1
-        return self.states_free(q_from + coarse_to_fine(int(self.steps(dq))) * dq)
+        if self._moving is not None and self._continuous:
+            if self._moving is not self.world and not self._steps_free(q_from, dq):
+                return False
+            return not self._moving.motion_collides(q_from, dq)
+        return self._steps_free(q_from, dq)
+
+    def _steps_free(self, q: Array, dq: Array) -> bool:
+        """Whether all steps from q (nq,) to q + dq are free."""
+        steps = int(self.steps(dq))
+        if self._moving is not None and self._moving is self.world:
+            self.states += steps
+            return not self._moving.steps_collide(q, dq, steps)
+        return self.states_free(q + coarse_to_fine(steps) / steps * dq)
 
     def path_free(self, path: Array) -> bool:
         """Whether a polyline (n, nq) is free, its first point taken as checked."""
@@ -81,16 +104,3 @@ def even_fractions(
     first = np.repeat(np.cumsum(counts) - counts, counts)
     fraction: Array = (np.arange(len(piece)) - first + 1) / counts[piece]
     return piece, fraction
-
-
-@lru_cache(maxsize=4096)
-def coarse_to_fine(steps: int) -> Array:
-    """The fractions 1/steps, 2/steps, ..., 1 as a column, by bisection: 1 comes first.
-
-    Neighbours collide together, so that this order meets an obstacle early.
-    """
-    index = np.arange(steps)
-    bits = max(1, int(steps - 1).bit_length())
-    reversed_bits = sum(((index >> b) & 1) << (bits - 1 - b) for b in range(bits))
-    order = np.argsort(reversed_bits, kind="stable")
-    return read_only(1.0 - order[:, None] / steps)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 import numpy.typing as npt
 from ompl import base as ob
 
-from mmplan.planning.checking import PathChecker, coarse_to_fine
+from mmplan.collision import coarse_to_fine
+from mmplan.planning.checking import PathChecker
 from mmplan.planning.drive import Drive, at_poses, make_drive
 from mmplan.planning.planners import make_planner
 from mmplan.planning.rolling import Steering, joints_of, wrapped
@@ -54,7 +55,8 @@ class Floor:
         for pose, piece in zip(starts, pieces, strict=False):
             dq = np.zeros(len(self.q))
             dq[self.base] = piece.length, piece.length, piece.turn
-            fractions = coarse_to_fine(int(self.checker.steps(dq)))[:, 0]
+            steps = int(self.checker.steps(dq))
+            fractions = coarse_to_fine(steps)[:, 0] / steps
             poses.append(piece.poses(pose, fractions))
         return self._all_free(np.concatenate(poses))
 
@@ -174,7 +176,7 @@ def _search(
         for pose in goals:
             ends.addState(_written(si.allocState(), pose))
         problem.setGoal(ends)
-        planner = make_planner(_PLANNER, si)
+        planner = make_planner(replace(settings, name=_PLANNER), si)
         planner.setProblemDefinition(problem)
         planner.setup()
         planner.solve(ob.PlannerTerminationCondition(Budget(settings, problem)))

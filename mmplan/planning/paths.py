@@ -86,7 +86,8 @@ def plan_path(
     require_planner(settings.name, circles=bool(joints.wraps.any()))
     q_goals = np.atleast_2d(q_goals)
     _require_still(world, q_start, q_goals, joints)
-    checker = PathChecker(world, settings.resolution)
+    continuous = settings.motion_check == "continuous"
+    checker = PathChecker(world, settings.resolution, continuous=continuous)
     fault = _fault(world, q_start, joints)
     if fault:
         return _failure(checker, PathOutcome.INVALID_START, f"the start: {fault}")

@@ -7,9 +7,7 @@ from ompl import geometric as og
 
 from mmplan.exceptions import InputError
 from mmplan.files.suggestions import unknown
-
-# The longest edge that a planner adds to its tree or graph, m.
-RANGE = 1.5
+from mmplan.problem import PlannerSettings
 
 # BITstar never frees its space information after a search that finds nothing, which
 # the bindings then lament on stderr when the process ends.
@@ -51,14 +49,14 @@ def require_planner(name: str, *, circles: bool = False) -> None:
         )
 
 
-def make_planner(name: str, si: ob.SpaceInformation) -> ob.Planner:
-    """A planner of that name, its range set where it has one.
+def make_planner(settings: PlannerSettings, si: ob.SpaceInformation) -> ob.Planner:
+    """The planner that the settings name, its range set where it has one.
 
     Raises:
         InputError: if there is none of that name.
     """
-    require_planner(name)
-    planner = getattr(og, name)(si)
+    require_planner(settings.name)
+    planner = getattr(og, settings.name)(si)
     if hasattr(planner, "setRange"):
-        planner.setRange(RANGE)
+        planner.setRange(settings.range)
     return planner

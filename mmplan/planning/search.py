@@ -89,7 +89,7 @@ def search(
         ends = np.vstack([q_start, q_goals])
         si = space_information(states, ends, checker)
         problem = _problem(si, states, ends)
-        planner = make_planner(settings.name, si)
+        planner = make_planner(settings, si)
         planner.setProblemDefinition(problem)
         planner.setup()
         budget = Budget(settings, problem)

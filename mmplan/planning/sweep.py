@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
 
 import numpy as np
-import pinocchio as pin
 
-from mmplan.collision.bounds import local_bounds
+from mmplan.collision import body_corners, joint_levers
+from mmplan.kinematics import motion_axis
 from mmplan.planning.upright import UprightWorld
 from mmplan.planning.world import PlanningWorld
 from mmplan.shapes import Array, read_only
@@ -59,16 +58,15 @@ def sweep_of(world: PlanningWorld) -> Sweep:
         joint = int(body.parentJoint)
         if joint:
             known = corners.get(joint, np.empty((0, 3)))
-            corners[joint] = np.vstack([known, _corners(body)])
-    axes = _axes(model)
-    rows = [_lever_arms(model, axes, joint, c) for joint, c in corners.items()]
+            corners[joint] = np.vstack([known, body_corners(body)])
+    rows = [joint_levers(model, joint, c) for joint, c in corners.items()]
     return Sweep(
         read_only(_undominated(np.array(rows).reshape(-1, model.nq))),
-        read_only(_rule_rows(world, axes)),
+        read_only(_rule_rows(world)),
     )
 
 
-def _rule_rows(world: PlanningWorld, axes: Array) -> Array:
+def _rule_rows(world: PlanningWorld) -> Array:
     """How far joints move a carried object's origin and turn it, (0 or 2, nq)."""
     if not isinstance(world, UprightWorld):
         return np.zeros((0, world.model.nq))
@@ -76,55 +74,9 @@ def _rule_rows(world: PlanningWorld, axes: Array) -> Array:
     joint = rule.robot.tool_joint
     turns = np.zeros(model.nq)
     for moved in list(model.supports[joint])[1:]:
-        turns[model.joints[moved].idx_q] = axes[moved, 3:].any() / rule.turn_per_metre
-    return np.array([_lever_arms(model, axes, joint, rule.origin[None]), turns])
-
-
-def _corners(body: pin.GeometryObject) -> Array:
-    """Corners (8, 3) of a box around a body, in the frame of its joint."""
-    centre, half = local_bounds(body.geometry)
-    corners = centre + half * np.array(list(product((-1.0, 1.0), repeat=3)))
-    T_joint_body = body.placement
-    placed: Array = corners @ T_joint_body.rotation.T + T_joint_body.translation
-    return placed
-
-
-def _axes(model: pin.Model) -> Array:
-    """The unit axis (linear or angular) of every joint in its frame, (njoints, 6)."""
-    data = model.createData()
-    pin.computeJointJacobians(model, data, pin.neutral(model))
-    axes = np.zeros((model.njoints, 6))
-    for joint in range(1, model.njoints):
-        J = pin.getJointJacobian(model, data, joint, pin.LOCAL)
-        axes[joint] = J[:, model.joints[joint].idx_v]
-    return axes
-
-
-def _lever_arms(model: pin.Model, axes: Array, joint: int, points: Array) -> Array:
-    """Bounds (nq,) on how far each joint moves `points` (n, 3) of one joint's frame.
-
-    Goes from the body towards the root. Above its own joint the body is known only as
-    a ball: somewhere within `radius` of `points`.
-    """
-    arms = np.zeros(model.nq)
-    radius = 0.0
-    while joint:
-        index = model.joints[joint].idx_q
-        squares = (points**2).sum(axis=1)
-        linear, angular = axes[joint, :3], axes[joint, 3:]
-        arms[index] = float(linear.any())
-        if angular.any():
-            arms[index] += np.sqrt(
-                np.maximum(squares - (points @ angular) ** 2, 0.0)
-            ).max()
-            arms[index] += radius
-        radius += float(np.sqrt(squares.max()))
-        if linear.any():
-            limits = model.lowerPositionLimit[index], model.upperPositionLimit[index]
-            radius += max(abs(float(limit)) for limit in limits)
-        points = model.jointPlacements[joint].translation[None]
-        joint = int(model.parents[joint])
-    return arms
+        turning = motion_axis(model, moved)[3:].any()
+        turns[model.joints[moved].idx_q] = turning / rule.turn_per_metre
+    return np.array([joint_levers(model, joint, rule.origin[None]), turns])
 
 
 def _undominated(rows: Array) -> Array:

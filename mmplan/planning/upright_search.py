@@ -17,7 +17,6 @@ import numpy as np
 from mmplan.planning.checking import PathChecker
 from mmplan.planning.joints import MovingJoints
 from mmplan.planning.metric import Metric
-from mmplan.planning.planners import RANGE
 from mmplan.planning.search import SAME_STATE, Search
 from mmplan.planning.upright import UprightRule
 from mmplan.problem import PlannerSettings
@@ -95,9 +94,9 @@ class UprightSearch:
         while way is None and iterations < settings.iterations and not late:
             one, other = trees if iterations % 2 == 0 else trees[::-1]
             iterations += 1
-            node = self._grow(one, next(samples), RANGE)
+            node = self._grow(one, next(samples), settings.range, settings.range)
             if node is not None:
-                meeting = self._grow(other, one.q[node], np.inf)
+                meeting = self._grow(other, one.q[node], np.inf, settings.range)
                 way = self._joined(trees, one, node, meeting)
             late = time.monotonic() > deadline
         q = trees[0].q
@@ -117,18 +116,21 @@ class UprightSearch:
         path = np.concatenate([start.path(here), goal.path(there)[::-1][1:]])
         return self.metric.unwrapped(path)
 
-    def _grow(self, tree: Tree, q: Array, longest: float) -> int | None:
-        """The last node that is added to a tree on the way towards q (nq,), if any."""
+    def _grow(self, tree: Tree, q: Array, longest: float, edge: float) -> int | None:
+        """The last node that is added to a tree on the way towards q (nq,), if any.
+
+        It goes no farther than `longest`, in edges no longer than `edge`, m.
+        """
         node = int(np.argmin(self.metric.distances(tree.q, q)))
         added, left = None, longest
         while left > 0.0:
-            way = self.way(tree.q[node], q, min(left, RANGE))
+            way = self.way(tree.q[node], q, min(left, edge))
             before = float(self.metric.distances(tree.q[node], q))
             after = float(self.metric.distances(way[-1], q)) if len(way) else before
             if after > before - min(before, _LEAST_PROGRESS * STEP) * (1.0 - 1e-9):
                 break
             added = node = tree.add(node, way)
-            left -= min(left, RANGE)
+            left -= min(left, edge)
             if after <= SAME_STATE:
                 break
         return added

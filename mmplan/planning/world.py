@@ -50,11 +50,32 @@ class PlanningWorld(Protocol):
 
 
 @runtime_checkable
+class MovingWorld(PlanningWorld, Protocol):
+    """A world that answers for whole motions from q (nq,) to q + dq."""
+
+    def steps_collide(self, q: Array, dq: Array, steps: int) -> bool:
+        """Whether any of q + k / steps · dq, k = 1, ..., steps, is in collision."""
+
+    def motion_collides(self, q: Array, dq: Array) -> bool:
+        """Whether anything collides on the way."""
+
+
+@runtime_checkable
 class RuledWorld(PlanningWorld, Protocol):
     """A world with rules beside the one that nothing may touch."""
 
     def broken_rules(self, q: Array) -> Sequence[str]:
         """The rules that are broken at one configuration (nq,), in words."""
+
+
+def moving_part(world: PlanningWorld) -> MovingWorld | None:
+    """The world, or the one within that other rules are laid upon, if it can do so."""
+    inner: object = world
+    while not isinstance(inner, MovingWorld):
+        inner = getattr(inner, "world", None)
+        if inner is None:
+            return None
+    return inner
 
 
 def contact_names(world: PlanningWorld, q: Array) -> str:

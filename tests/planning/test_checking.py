@@ -4,16 +4,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmplan.planning import PathChecker
-from mmplan.planning.checking import coarse_to_fine, even_fractions
+from mmplan.planning.checking import even_fractions
 
 RESOLUTION = 0.02
-
-
-@given(st.integers(1, 3000))
-def test_coarse_to_fine_is_every_fraction_once_and_the_end_first(steps):
-    fractions = coarse_to_fine(steps)[:, 0]
-    assert fractions[0] == 1.0
-    assert np.sort(fractions) == pytest.approx(np.arange(1, steps + 1) / steps)
 
 
 @given(st.lists(st.integers(1, 9), min_size=1, max_size=9))

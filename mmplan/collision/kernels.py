@@ -1,0 +1,355 @@
+"""Compiled loops of the broadphase: boxes against boxes.
+
+Needs numba. A body is known by the oriented box about it, (4, 4): above the box's pose,
+in the last row its half extents and the radius of the ball about it. Boxes are apart if
+one of the 15 axes of Gottschalk, Lin and Manocha ("OBBTree", SIGGRAPH 1996) separates
+them.
+
+Arguments that several functions share:
+
+    tree: Parent and place in q of each joint, (2, joints).
+    basis: Poses of joints in their parents' frames, (joints, 4, 3, 4), for each the
+        factors of 1, sin q, cos q and q.
+    joint: The joint of each moving body, (m,).
+    moving: The boxes of these in the frames of their joints, (m, 4, 4).
+    static: The boxes of the bodies that stand still, in the world, (s, 4, 4).
+    pairs: For each pair its number, its moving body, the other body, and what the
+        latter is: `STATIC`, or moving too: `MOVING`, or the table of clear cells that
+        holds for both, (p, 4).
+    cells, clear: Tables of clear cells, (k, 6) and (k, c, c); see `clear_cells`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from mmplan.collision.pairs import Flags, Indices
+from mmplan.shapes import Array
+
+STATIC, MOVING = -2, -1
+
+# Added to the cosines between axes, so that nearly parallel ones separate nothing that
+# touches.
+_ROUNDING = 1e-12
+# Into how many parts a motion can be cut, and how often it is halved at most.
+PARTS = 1 << 30
+HALVINGS = 16
+
+
+@njit(cache=True)
+def find_suspects(
+    q: Array,
+    T_world_joint: Array,
+    joint: Indices,
+    moving: Array,
+    static: Array,
+    pairs: Indices,
+    cells: Array,
+    clear: Flags,
+    found: Indices,
+    depth: Array,
+) -> int:
+    """Write the pairs whose boxes overlap to `found` and return their number.
+
+    Args:
+        q: Configurations (n, nq), or (n, 0) where they are not known.
+        T_world_joint: Poses of all joints at these, (n, joints + 1, 3 or 4, 4).
+        found: Row and pair's number of each find, by row, (c, 2); those beyond c are
+            counted only.
+        depth: By how much the boxes overlap, (c,), m.
+    """
+    count = 0
+    boxes, room = np.empty((len(joint), 4, 4)), np.empty((3, 3, 3))
+    still = np.zeros(q.shape[1])
+    for row in range(len(T_world_joint)):
+        T = T_world_joint[row]
+        for mover in range(len(joint)):
+            _place_box(T, joint[mover], moving, boxes, mover)
+        for e in range(len(pairs)):
+            i, j = pairs[e, 1], pairs[e, 2]
+            if pairs[e, 3] == STATIC:
+                if _is_beyond(static, j, boxes, i, 0.0):
+                    continue
+                overlap = _overlap(static, j, boxes, i, 0.0, room)
+            else:
+                if _are_far(boxes, i, j, 0.0):
+                    continue
+                overlap = _overlap(boxes, j, boxes, i, 0.0, room)
+            if overlap < 0.0:
+                continue
+            if len(still) and _are_clear(q[row], still, pairs[e, 3], cells, clear):
+                continue
+            if count < len(depth):
+                found[count, 0], found[count, 1] = row, pairs[e, 0]
+                depth[count] = overlap
+            count += 1
+    return count
+
+
+@njit(cache=True)
+def search_motion(
+    q: Array,
+    dq: Array,
+    steps: int,
+    smallest: float,
+    tree: Indices,
+    basis: Array,
+    joint: Indices,
+    moving: Array,
+    static: Array,
+    pairs: Indices,
+    levers: Array,
+    cells: Array,
+    clear: Flags,
+    lists: Indices,
+    found: Indices,
+    depth: Array,
+) -> int:
+    """Write the pairs that may touch on the way from q to q + dq; return their number.
+
+    The motion is halved again and again. A pair is followed into both halves unless its
+    boxes are farther apart than the joints can carry the bodies within the stretch at
+    hand. So most pairs are dropped early, and most stretches never looked at.
+
+    With `steps` above 0 the question is about the configurations q + k / steps · dq,
+    k = 1, ..., steps, and stretches are runs of k. With 0 it is about the whole motion,
+    and a pair is found with a stretch once its boxes overlap in the middle of it, or
+    the bodies can come nearer by no more than `smallest` (m) within it.
+
+    Args:
+        q: Where the motion begins, (nq,).
+        dq: The way from there, (nq,).
+        steps: See above.
+        smallest: See above.
+        levers: How far each joint can carry the bodies of a pair towards each other,
+            (p, nq), m/rad or m/m.
+        lists: Room for the pairs that are followed, (p * (HALVINGS + 2),).
+        found: Of each find the pair's number, then the step twice or the first and the
+            last of `PARTS` parts of the motion, (c, 3); those beyond c are counted
+            only.
+        depth: By how much the boxes overlap, (c,), m.
+    """
+    count = 0
+    sampled = steps > 0
+    parts = steps if sampled else PARTS
+    span, here, spread = np.abs(dq), np.empty(len(q)), np.empty(len(q))
+    way = levers @ span
+    lists[: len(pairs)] = np.arange(len(pairs))
+    T = np.zeros((tree.shape[1] + 1, 3, 4))
+    T[0, 0, 0] = T[0, 1, 1] = T[0, 2, 2] = 1.0
+    boxes, room = np.empty((len(joint), 4, 4)), np.empty((3, 3, 3))
+    placed, node = np.zeros(len(joint), np.int64), 0
+    # Stretches yet to be looked at: first and last, and where their list of pairs is.
+    todo = np.empty((HALVINGS + 2, 4), np.int64)
+    todo[0] = (1 if sampled else 0, parts, 0, len(pairs))
+    open_ = 1
+    while open_ > 0:
+        open_ -= 1
+        first, last = todo[open_, 0], todo[open_, 1]
+        start, end = todo[open_, 2], todo[open_, 3]
+        middle = (first + last + 1) // 2
+        half = max(middle - first, last - middle) / parts
+        for k in range(len(q)):
+            here[k] = q[k] + middle / parts * dq[k]
+            spread[k] = half * span[k]
+        _place_joints(here, tree, basis, T)
+        node += 1
+        short = not sampled and last - first <= PARTS >> HALVINGS
+        kept = end
+        for place in range(start, end):
+            e = lists[place]
+            reach = half * way[e]
+            i, j = pairs[e, 1], pairs[e, 2]
+            if placed[i] < node:
+                placed[i] = node
+                _place_box(T, joint[i], moving, boxes, i)
+            if pairs[e, 3] == STATIC:
+                if _is_beyond(static, j, boxes, i, reach):
+                    continue
+                overlap = _overlap(static, j, boxes, i, reach, room) - reach
+            else:
+                if placed[j] < node:
+                    placed[j] = node
+                    _place_box(T, joint[j], moving, boxes, j)
+                if _are_far(boxes, i, j, reach):
+                    continue
+                overlap = _overlap(boxes, j, boxes, i, reach, room) - reach
+            if overlap < -reach:
+                continue
+            if pairs[e, 3] >= 0 and _are_clear(here, spread, pairs[e, 3], cells, clear):
+                continue
+            hit = overlap >= 0.0
+            if hit and sampled and reach > 0.0:
+                if pairs[e, 3] == STATIC:
+                    hit = _overlap(static, j, boxes, i, 0.0, room) >= 0.0
+                else:
+                    hit = _overlap(boxes, j, boxes, i, 0.0, room) >= 0.0
+            if hit or (not sampled and (short or reach <= smallest)):
+                if count < len(depth):
+                    found[count, 0] = pairs[e, 0]
+                    found[count, 1] = middle if sampled else first
+                    found[count, 2] = middle if sampled else last
+                    depth[count] = overlap
+                count += 1
+                if not sampled:
+                    continue
+            lists[kept] = e
+            kept += 1
+        if kept == end:
+            continue
+        # The first half comes last, so that it is looked at next.
+        if middle < last:
+            todo[open_] = (middle + 1 if sampled else middle, last, end, kept)
+            open_ += 1
+        if middle > first:
+            todo[open_] = (first, middle - 1 if sampled else middle, end, kept)
+            open_ += 1
+    return count
+
+
+@njit(cache=True)
+def joint_poses(q: Array, tree: Indices, basis: Array) -> Array:
+    """Poses of all joints at q (n, nq), (n, joints + 1, 3, 4); joint 0 is the world."""
+    T = np.zeros((len(q), tree.shape[1] + 1, 3, 4))
+    for row in range(len(q)):
+        T[row, 0, 0, 0] = T[row, 0, 1, 1] = T[row, 0, 2, 2] = 1.0
+        _place_joints(q[row], tree, basis, T[row])
+    return T
+
+
+@njit(cache=True)
+def _place_joints(q: Array, tree: Indices, basis: Array, T: Array) -> None:
+    """Set T (joints + 1, 3, 4) to the poses of all joints; T[0] is the world's."""
+    relative = np.empty((1, 3, 4))
+    for k in range(tree.shape[1]):
+        value = q[tree[1, k]]
+        sine, cosine = np.sin(value), np.cos(value)
+        for i in range(3):
+            for j in range(4):
+                relative[0, i, j] = (
+                    basis[k, 0, i, j]
+                    + basis[k, 1, i, j] * sine
+                    + basis[k, 2, i, j] * cosine
+                    + basis[k, 3, i, j] * value
+                )
+        _compose(T, tree[0, k], relative, 0, T, k + 1)
+
+
+@njit(cache=True)
+def _place_box(T: Array, joint: int, moving: Array, boxes: Array, i: int) -> None:
+    """Set box i of boxes (m, 4, 4) to where the pose of its joint takes it."""
+    _compose(T, joint, moving, i, boxes, i)
+    for k in range(4):
+        boxes[i, 3, k] = moving[i, 3, k]
+
+
+@njit(cache=True)
+def _compose(A: Array, a: int, B: Array, b: int, out: Array, o: int) -> None:
+    """Set pose o in `out` to the product of poses a in A and b in B."""
+    for i in range(3):
+        x, y, z = A[a, i, 0], A[a, i, 1], A[a, i, 2]
+        for j in range(4):
+            out[o, i, j] = x * B[b, 0, j] + y * B[b, 1, j] + z * B[b, 2, j]
+        out[o, i, 3] += A[a, i, 3]
+
+
+@njit(cache=True)
+def _are_clear(q: Array, spread: Array, table: int, cells: Array, clear: Flags) -> bool:
+    """Whether two joints are where a pair of bodies is known to be apart.
+
+    At a configuration q (nq,), from which each joint may be off by `spread` (nq,).
+    """
+    if table < 0:
+        return False
+    place = cells[table]
+    a, b = int(place[0]), int(place[1])
+    first = int(np.floor((q[a] - spread[a] - place[2]) / place[3]))
+    last = int(np.floor((q[a] + spread[a] - place[2]) / place[3]))
+    low = int(np.floor((q[b] - spread[b] - place[4]) / place[5]))
+    high = int(np.floor((q[b] + spread[b] - place[4]) / place[5]))
+    if min(first, low) < 0 or max(last, high) >= clear.shape[1]:
+        return False
+    for i in range(first, last + 1):
+        for j in range(low, high + 1):
+            if not clear[table, i, j]:
+                return False
+    return True
+
+
+# In the following, bodies are rows of arrays of boxes: views of these would take longer
+# to make than all else.
+
+
+@njit(cache=True)
+def _is_beyond(A: Array, a: int, B: Array, b: int, margin: float) -> bool:
+    """Whether a box is farther than a margin from the ball about another."""
+    radius = B[b, 3, 3] + margin
+    x = B[b, 0, 3] - A[a, 0, 3]
+    y = B[b, 1, 3] - A[a, 1, 3]
+    z = B[b, 2, 3] - A[a, 2, 3]
+    square = 0.0
+    for axis in range(3):
+        along = A[a, 0, axis] * x + A[a, 1, axis] * y + A[a, 2, axis] * z
+        beyond = abs(along) - A[a, 3, axis]
+        if beyond > radius:
+            return True
+        if beyond > 0.0:
+            square += beyond * beyond
+    return square > radius * radius
+
+
+@njit(cache=True)
+def _are_far(boxes: Array, i: int, j: int, margin: float) -> bool:
+    """Whether the balls about two boxes are farther apart than a margin."""
+    radius = boxes[i, 3, 3] + boxes[j, 3, 3] + margin
+    x = boxes[i, 0, 3] - boxes[j, 0, 3]
+    y = boxes[i, 1, 3] - boxes[j, 1, 3]
+    z = boxes[i, 2, 3] - boxes[j, 2, 3]
+    return x * x + y * y + z * z > radius * radius
+
+
+@njit(cache=True)
+def _overlap(A: Array, a: int, B: Array, b: int, margin: float, room: Array) -> float:
+    """The least overlap along the faces' normals; below 0 where an axis separates."""
+    x = B[b, 0, 3] - A[a, 0, 3]
+    y = B[b, 1, 3] - A[a, 1, 3]
+    z = B[b, 2, 3] - A[a, 2, 3]
+    least = np.inf
+    for i in range(3):
+        reach = A[a, 3, i] + margin
+        for j in range(3):
+            cosine = A[a, 0, i] * B[b, 0, j]
+            cosine += A[a, 1, i] * B[b, 1, j]
+            cosine += A[a, 2, i] * B[b, 2, j]
+            room[0, i, j] = cosine
+            room[1, i, j] = abs(cosine) + _ROUNDING
+            reach += B[b, 3, j] * room[1, i, j]
+        away = A[a, 0, i] * x + A[a, 1, i] * y + A[a, 2, i] * z
+        room[2, 0, i] = away
+        least = min(least, reach - abs(away))
+        if least < 0.0:
+            return least
+    for j in range(3):
+        reach = B[b, 3, j] + margin
+        for i in range(3):
+            reach += A[a, 3, i] * room[1, i, j]
+        away = B[b, 0, j] * x + B[b, 1, j] * y + B[b, 2, j] * z
+        least = min(least, reach - abs(away))
+        if least < 0.0:
+            return least
+    for i in range(3):
+        i1, i2 = (i + 1) % 3, (i + 2) % 3
+        for j in range(3):
+            j1, j2 = (j + 1) % 3, (j + 2) % 3
+            reach = A[a, 3, i1] * room[1, i2, j] + A[a, 3, i2] * room[1, i1, j]
+            reach += B[b, 3, j1] * room[1, i, j2] + B[b, 3, j2] * room[1, i, j1]
+            away = abs(
+                room[2, 0, i2] * room[0, i1, j] - room[2, 0, i1] * room[0, i2, j]
+            )
+            if away > reach:
+                # The axis is as long as the sine of the angle between two edges.
+                sine = np.sqrt(room[0, i1, j] ** 2 + room[0, i2, j] ** 2)
+                if away > reach + margin * sine:
+                    return -1.0
+    return least

@@ -1,0 +1,135 @@
+"""Whole motions: both broadphases, sampled and continuous, tell the same."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from mmplan.collision import CollisionWorld
+from mmplan.collision.broadphase import Broadphase
+from mmplan.collision.checker import Checker
+from mmplan.collision.clear_cells import clear_cells
+from mmplan.collision.compiled_broadphase import CompiledBroadphase
+from mmplan.problem import Obstacle
+from mmplan.robot_build import load_robot
+from mmplan.shapes import Array, Box
+from tests.collision.worlds import among, carrying, draw, q_tucked
+from tests.honest import shift
+
+WORLDS = [(n, w) for n in ("wineglass", "plate") for w in ("standing", "attached")]
+EDGES, STEPS = 60, 12
+
+everywhere = pytest.mark.parametrize(("name", "where"), WORLDS)
+
+
+@cache
+def checkers(name: str, where: str) -> tuple[Checker, Checker]:
+    """A checker with the compiled broadphase, and one with that in numpy."""
+    compiled, plain = (checker_of(carrying(name, where)) for _ in range(2))
+    world = carrying(name, where)
+    assert isinstance(compiled._broadphase, CompiledBroadphase)
+    margin = max(0.0, -float(world.allowed_depth.min()))
+    plain._broadphase = Broadphase(
+        world.model, world.geometry, world.bodies, world.pairs, plain._levers, margin
+    )
+    return compiled, plain
+
+
+def checker_of(world: CollisionWorld) -> Checker:
+    return Checker(world.robot, world._assembly)
+
+
+def edges(seed: int) -> tuple[Array, Array]:
+    """Where short motions begin (n, nq), and the ways from there."""
+    q = draw(EDGES, seed)
+    way = np.random.default_rng(seed + 1).normal(size=q.shape)
+    return q, way * 0.6 / np.linalg.norm(way, axis=1, keepdims=True)
+
+
+@everywhere
+def test_broadphases_agree_on_configurations(name: str, where: str) -> None:
+    compiled, plain = checkers(name, where)
+    q = draw(1500, 0)
+    hits = compiled.in_collision(q)
+    assert 0.1 < hits.mean() < 0.9
+    assert np.array_equal(hits, plain.in_collision(q))
+
+
+@everywhere
+def test_steps_are_single_configurations(name: str, where: str) -> None:
+    both, found = checkers(name, where), set()
+    for q, dq in zip(*edges(3), strict=True):
+        steps = q + np.arange(1, STEPS + 1)[:, None] / STEPS * dq
+        expected = bool(both[0].in_collision(steps).any())
+        found.add(expected)
+        assert [c.steps_collide(q, dq, STEPS) for c in both] == [expected] * 2
+    assert found == {True, False}
+
+
+@everywhere
+def test_continuous_is_stricter_than_many_steps(name: str, where: str) -> None:
+    both, free = checkers(name, where), 0
+    for q, dq in zip(*edges(5), strict=True):
+        touching = both[0].steps_collide(q, dq, 700)
+        answers = [c.motion_collides(q, dq) for c in both]
+        assert answers[0] == answers[1]
+        assert answers[0] or not touching
+        free += not answers[0]
+    assert 0 < free < EDGES
+
+
+def test_continuous_is_no_stricter_than_it_must_be() -> None:
+    """Motions that come within 1 mm of a touch, and not nearer, are free."""
+    world = carrying("wineglass", "standing")
+    near, compiled = world.keeping(0.001), checkers("wineglass", "standing")[0]
+    strict = checker_of(near)
+    q, dq = edges(7)
+    for start, way in zip(q, dq, strict=True):
+        if compiled.motion_collides(start, way):
+            assert strict.steps_collide(start, way, 700)
+
+
+@pytest.mark.parametrize("thickness", [1e-3, 1e-5])
+def test_nothing_is_too_thin(thickness: float) -> None:
+    """A sheet between two steps of the base is jumped by steps alone."""
+    pose = shift(0.0, 0.0, 1.0)
+    sheet = Obstacle("sheet", Box((thickness, 9.0, 3.0)), pose)
+    world = among(sheet)
+    q = q_tucked(-2.0)
+    dq = q_tucked(2.0) - q
+    assert not world.in_collision(np.array([q, q + dq])).any()
+    assert not world.steps_collide(q, dq, 1)
+    assert world.motion_collides(q, dq)
+    assert not world.motion_collides(q, 0.2 * dq)
+
+
+def test_what_is_known_of_two_links_changes_no_answer() -> None:
+    robot = load_robot("panda_mobile")
+    scenery = carrying("wineglass", "standing").scenery
+    world = CollisionWorld(robot, scenery, standing={})
+    rng = np.random.default_rng(1)
+    group = robot.arm
+    q = np.tile(robot.q_neutral, (800, 1))
+    q[:, group.indices] = rng.uniform(group.lower, group.upper, (800, len(group)))
+    before, learnt = checker_of(world), checker_of(world)
+    tables = 0
+    for pair, (i, j) in enumerate(world.pairs.tolist()):
+        if max(i, j) < robot.geometry.ngeoms:
+            known = clear_cells(robot, i, j)
+            if known is not None:
+                assert known.clear.any()
+                learnt._broadphase.learn(pair, known)
+                tables += 1
+    assert tables > 0
+    assert np.array_equal(before.in_collision(q), learnt.in_collision(q))
+    suspects = [
+        sum(len(s.row) for s in c._broadphase.suspects(q)) for c in (before, learnt)
+    ]
+    assert suspects[1] < suspects[0]
+    dq = rng.normal(size=q.shape)[:100] * 0.1
+    dq[:, group.indices[-1] + 1 :] = 0.0
+    for start, way in zip(q, dq, strict=False):
+        answers = {c.motion_collides(start, way) for c in (before, learnt)}
+        assert len(answers) == 1
