@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from mmplan.explanation.near_miss import NearMiss, line_between
+from mmplan.explanation.near_steps import Steps
 from mmplan.kinematics import joint_placements
-from mmplan.optimizers import Queries, SearchSpace
+from mmplan.optimizers import Queries
 from mmplan.scoring import End, Outcome, ScoreFunction
 from mmplan.shapes import Array
 
@@ -19,36 +20,24 @@ _STEP = 0.2  # m, or the share of a grasp gene's range, at first
 _SHORTER = (0.5, 0.8, 0.95)  # of the way missing, tried in each step
 
 
-def nearest_reach(
-    score: ScoreFunction,
-    space: SearchSpace,
-    end: End,
-    queries: Queries,
-    rng: np.random.Generator,
-    *,
-    same_grasp: bool = False,
-) -> NearMiss | None:
+def nearest_reach(steps: Steps, queries: Queries) -> NearMiss | None:
     """The least way by which the tool falls short of a grasp, turned as that wants it.
 
     The way leads towards the arm's root, or straight up or down. It is sought among
-    the queries, and by random steps from the best of them that leave the `same_grasp`
-    if asked to. None where the tool cannot be turned so anywhere near.
+    the queries, and by random steps from the best of them. None where the tool cannot
+    be turned so anywhere near.
     """
+    score, end = steps.score, steps.end
     attempts = _Attempts(score, end)
     best = attempts.least(_nearest(score, end, queries), _LADDER)
     if best is None:
         return None
-    for step in np.geomspace(_STEP, _STEP / 50.0, _STEPS):
-        low, high = score.problem.base_bounds.T
-        moved = best.q_base + rng.normal(0.0, step, len(best.q_base))
-        q_base = np.clip(moved, low, high)[None]
-        genes = best.grasp + rng.normal(0.0, step, len(best.grasp)) * space.grasps.range
-        genes = best.grasp if same_grasp else space.grasps.contain(genes)
-        if score.base_outcomes(end, q_base)[0] != Outcome.SCORED:
-            continue
-        pair = Queries(np.full(1, end, np.int8), q_base, genes[None])
-        best = attempts.least(pair, best.way * np.array(_SHORTER)) or best
-    return _miss(score, end, best)
+    for size in steps.sizes(_STEP, _STEPS):
+        pair = steps.taken(best.q_base, best.grasp, size)
+        if score.base_outcomes(end, pair.q_base)[0] == Outcome.SCORED:
+            best = attempts.least(pair, best.way * np.array(_SHORTER)) or best
+    target = _targets(score, end, steps.pair(best.q_base, best.grasp))[0, :3, 3]
+    return _miss(score, end, best, target)
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,10 +123,8 @@ def _directions(way: Array) -> Array:
     return unit
 
 
-def _miss(score: ScoreFunction, end: End, best: _Attempt) -> NearMiss:
+def _miss(score: ScoreFunction, end: End, best: _Attempt, target: Array) -> NearMiss:
     robot = score.problem.robot
-    pair = Queries(np.full(1, end, np.int8), best.q_base[None], best.grasp[None])
-    target = _targets(score, end, pair)[0, :3, 3]
     return NearMiss(
         end=end,
         kind="reach",

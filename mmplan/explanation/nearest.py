@@ -12,6 +12,7 @@ from mmplan.explanation.near_limit import nearest_limit
 from mmplan.explanation.near_miss import NearMiss
 from mmplan.explanation.near_overlap import nearest_overlap
 from mmplan.explanation.near_reach import nearest_reach
+from mmplan.explanation.near_steps import Steps
 from mmplan.explanation.survey import bases_about
 from mmplan.optimizers import Queries
 from mmplan.scoring import End, Outcome
@@ -27,20 +28,20 @@ def nearest_miss(
     evidence: Evidence, cause: Cause, rng: np.random.Generator
 ) -> NearMiss | None:
     """The nearest miss of what a cause is about, None where there is no measure."""
-    score, space = evidence.score, evidence.space
     if cause.kind == "common grasp":
         return _furthest_grasp(evidence, rng)
     if cause.end is None:
         return None
     seen = evidence.surveys[cause.end]
     if cause.kind == "joint limits":
-        return nearest_limit(score, seen)
+        return nearest_limit(evidence.score, seen)
+    steps = Steps(evidence.score, evidence.space, cause.end, rng)
     if cause.kind in ("collision", "hand opened"):
-        return nearest_overlap(score, space, cause.end, evidence.queries, rng)
+        return nearest_overlap(steps, evidence.queries)
     if cause.kind in ("reach", "base", "base bounds"):
         free = seen.queries.take(seen.base == Outcome.SCORED)
         pairs = free if len(free.end) else _far_pairs(evidence, cause.end, rng)
-        return nearest_reach(score, space, cause.end, pairs, rng)
+        return nearest_reach(steps, pairs)
     return None
 
 
@@ -61,12 +62,10 @@ def _furthest_grasp(evidence: Evidence, rng: np.random.Generator) -> NearMiss | 
     misses = []
     for end in End:
         pairs = _pairs_with_grasps_of_the_other(evidence, end, rng)
-        score, space = evidence.score, evidence.space
-        for measure in (nearest_overlap, nearest_reach):
-            miss = measure(score, space, end, pairs, rng, same_grasp=True)
-            if miss is not None:
-                misses.append(replace(miss, works_at=End(1 - end)))
-                break
+        steps = Steps(evidence.score, evidence.space, end, rng, same_grasp=True)
+        miss = nearest_overlap(steps, pairs) or nearest_reach(steps, pairs)
+        if miss is not None:
+            misses.append(replace(miss, works_at=End(1 - end)))
     return min(misses, key=lambda miss: miss.amount, default=None)
 
 
