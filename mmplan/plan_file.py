@@ -146,14 +146,14 @@ class ClearanceFile(_Model):
 
 
 class PeakFile(_Model):
-    """The largest value of what a rule of carrying limits."""
+    """The largest value of what a rule limits."""
 
     rule: str
-    """tilt (rad) or tool_speed (m/s)."""
+    """tilt (rad), tool_speed (m/s) or torque (as a share of its limit)."""
     limit: Number
     largest: Number
     proven: Number | None
-    """Never exceeded; null where the limit is not kept."""
+    """Never exceeded; null where the limit is not kept, and for torques."""
     task: Annotated[int, Field(ge=0)]
     """Index into tasks."""
     segment: str
@@ -174,7 +174,7 @@ class ReportFile(_Model):
     intervals: Annotated[int, Field(ge=0)]
     """Stretches of time looked at."""
     peaks: list[PeakFile] = []
-    """Of every rule of carrying of every task, in their order."""
+    """Of every rule beside collisions of every task."""
 
 
 class PlanFile(_Model):

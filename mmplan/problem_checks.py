@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+import numpy as np
+import pinocchio as pin
+
 from mmplan.carry import Upright
 from mmplan.collision import (
     TOUCH_TOLERANCE,
@@ -38,6 +41,7 @@ def check_geometry(problem: Problem, document: Document) -> None:
         *_start_faults(problem, world),
         *_object_faults(problem, world),
         *_carry_faults(problem, world.scenery),
+        *_torque_faults(problem),
     ]
     if faults:
         raise document.error(faults)
@@ -120,6 +124,30 @@ def _upright_faults(
         message = f"{what} tilted by {tilt:.4g} rad, and at most {upright.angle:g} are "
         message += "allowed; name the axis that points up, or regions in which it need "
         yield Fault((*where, "upright"), f"{message}not")
+
+
+def _torque_faults(problem: Problem) -> Iterator[Fault]:
+    """What is missing for torques to be limited, or a start that is too heavy."""
+    if not problem.planner.torque:
+        return
+    where: KeyPath = ("planner", "torque")
+    robot, model = problem.robot, problem.robot.model
+    limits = model.upperEffortLimit[robot.arm.indices]
+    still = np.zeros(model.nv)
+    held = pin.rnea(model, model.createData(), problem.q_start, still, still)
+    for name, limit, torque in zip(
+        robot.arm.names, limits, np.abs(held[robot.arm.indices]), strict=True
+    ):
+        if not 0.0 < limit < np.inf:
+            yield Fault(where, f"{robot.name} has no effort limit for {name}")
+        elif torque > limit:
+            message = f"at its start {robot.name} needs {torque:.4g} at {name} to stand"
+            yield Fault(where, f"{message} still, past its effort limit of {limit:g}")
+    if not any(model.inertias[model.getJointId(n)].mass for n in robot.arm.names):
+        yield Fault(where, f"the arm of {robot.name} has no masses in its URDF")
+    for name in {task.object for task in problem.tasks}:
+        if problem.object(name).mass is None:
+            yield Fault(("objects", name), "missing key 'mass', for planner.torque")
 
 
 def _overlaps(

@@ -93,14 +93,17 @@ def verification_table(plan: Plan, report: VerificationReport) -> str:
 
 
 def _peak(plan: Plan, peak: Peak) -> str:
+    place = f"{peak.segment} at {peak.time:.2f} s"
+    item = plan.tasks[peak.task].object
+    if peak.rule == "torque":
+        return f"largest torque for {item}: {peak.largest:.1%} of its limit, {place}"
     what, unit = {"tilt": ("tilt", "rad"), "tool_speed": ("speed of the tool", "m/s")}[
         peak.rule
     ]
     proven = "" if peak.proven is None else f", proven below {peak.proven:.4f}"
     return (
-        f"largest {what} while {plan.tasks[peak.task].object} is carried: "
-        f"{peak.largest:.4f} {unit}{proven} (at most {peak.limit:g} allowed), "
-        f"{peak.segment} at {peak.time:.2f} s"
+        f"largest {what} while {item} is carried: {peak.largest:.4f} {unit}{proven} "
+        f"(at most {peak.limit:g} allowed), {place}"
     )
 
 

@@ -36,13 +36,13 @@ class Clearance:
 
 @dataclass(frozen=True)
 class Peak:
-    """The largest value of something that a rule limits while an object is carried.
+    """The largest value of something that a rule limits.
 
     `largest` was measured at the time that it tells; `proven` is what it never exceeds,
-    None where the limit is not kept.
+    None where the limit is not kept, and of torques, which are looked at in places.
     """
 
-    rule: str  # "tilt" (rad), where it counts, or "tool_speed" (m/s)
+    rule: str  # "tilt" (rad, where it counts), "tool_speed" (m/s), "torque" (share)
     limit: float
     largest: float
     proven: float | None
@@ -58,7 +58,7 @@ class VerificationReport:
     `clearance` was measured at the time that it tells; nothing that must stay apart
     ever comes nearer than `proven` (m), which is 0 where there are faults. `queries`
     counts exact distance computations and `intervals` the stretches of time that
-    the proof looked at. `peaks` has a peak for each rule of carrying of each task.
+    the proof looked at. `peaks` has one for each rule beside collisions of each task.
     """
 
     faults: tuple[Fault, ...]

@@ -18,6 +18,7 @@ from mmplan.scoring import End, Outcome
 Kind = Literal[
     "hand",
     "grasp quality",
+    "carry",
     "reach",
     "joint limits",
     "base bounds",
@@ -44,6 +45,7 @@ PATHS: tuple[Kind, ...] = ("transit", "transfer")
 _AT_AN_END: tuple[Kind, ...] = (
     "hand",
     "grasp quality",
+    "carry",
     "reach",
     "joint limits",
     "base bounds",
@@ -54,12 +56,14 @@ _AT_AN_END: tuple[Kind, ...] = (
 _FURTHEST: Mapping[Outcome, Kind] = {
     Outcome.NO_CONTACT: "hand",
     Outcome.LOW_QUALITY: "grasp quality",
+    Outcome.NOT_CARRIED: "carry",
     Outcome.COLLISION: "collision",
     Outcome.HAND_OPEN_COLLISION: "hand opened",
 }
 _TEXTS: Mapping[Kind, str] = {
     "hand": "the hand closes on the object in none of the grasps",
     "grasp quality": "no grasp is of the quality that the scene wants",
+    "carry": "no grasp lets the arm hold the object upright where it must become so",
     "reach": "the arm reaches no grasp from anywhere",
     "joint limits": "the arm reaches grasps only beyond its joint limits",
     "base bounds": "the arm reaches grasps only from where the base may not go",
@@ -105,8 +109,9 @@ def kind_at(survey: Survey, outcomes: frozenset[Outcome]) -> Kind:
     seen at this end.
     """
     if not np.any(survey.holds == Outcome.SCORED):
-        touches = np.any(survey.holds == Outcome.LOW_QUALITY)
-        return "grasp quality" if touches else "hand"
+        seen = (Outcome(value) for value in np.unique(survey.holds))
+        best = max(seen, default=Outcome.NO_CONTACT)
+        return _FURTHEST.get(best, "hand")
     furthest = max(outcomes)
     if furthest in _FURTHEST:
         return _FURTHEST[furthest]
@@ -154,7 +159,7 @@ def _blocked(blocked: Sequence[Blocked]) -> Cause:
 def _cause_at(end: End, evidence: Evidence) -> Cause:
     """The cause at an end; a hand that never closes is no matter of one end."""
     kind = kind_at(evidence.surveys[end], evidence.outcomes(end))
-    if kind in ("hand", "grasp quality"):
+    if kind in ("hand", "grasp quality", "carry"):
         return Cause(kind, None, _TEXTS[kind])
     found = None
     if kind == "base":

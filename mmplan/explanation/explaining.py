@@ -135,7 +135,7 @@ def _explanation(
 
 def _suspects(setting: Setting, evidence: Evidence, cause: Cause) -> list[str]:
     """What might be taken away: culprits first, then all that is hit at either end."""
-    if cause.kind in ("hand", "grasp quality"):
+    if cause.kind in ("hand", "grasp quality", "carry"):
         return []
     scenery = setting.world.scenery
     known = {s.owner for s in scenery.obstacles if not scenery.is_ground(s.owner)}

@@ -19,6 +19,7 @@ _PASSED = {
     Outcome.JOINT_LIMITS: "within the joint limits",
     Outcome.NO_CONTACT: "hand closes on the object",
     Outcome.LOW_QUALITY: "grasp quality high enough",
+    Outcome.NOT_CARRIED: "can be carried upright",
     Outcome.COLLISION: "free of collision, hand closed",
     Outcome.HAND_OPEN_COLLISION: "free of collision, hand opened",
 }

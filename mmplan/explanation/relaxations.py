@@ -58,6 +58,7 @@ _ITERATIONS = 1000  # of the planner
 _GRASPING: tuple[Kind, ...] = (
     "hand",
     "grasp quality",
+    "carry",
     "reach",
     "joint limits",
     "collision",

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import pinocchio as pin
 
 from mmplan.candidate import Candidate
-from mmplan.collision import CollisionWorld
+from mmplan.collision import CollisionWorld, inertia_of
 from mmplan.ik.windings import windings
 from mmplan.motion.carrying import kept_upright
 from mmplan.motion.parts import Blocked, BlockedError, Part, time_part
@@ -16,7 +17,7 @@ from mmplan.motion.short_motions import ShortMotions
 from mmplan.motion.ways import WayFinder
 from mmplan.motion.zoned_world import with_zones
 from mmplan.plan import Segment
-from mmplan.planning import PathLimit, ToolSpeed, motion_limits
+from mmplan.planning import PathLimit, ToolSpeed, TorqueLimit, motion_limits
 from mmplan.problem import Problem, Task
 from mmplan.shapes import Array
 
@@ -64,6 +65,7 @@ class TaskMotion:
         carrying = self._carrying(candidate)
         pick = self._short.pick(candidate, carrying)
         place = self._short.place(candidate, carrying)
+        self._require_strength(pick[-1], place[0])
         transit, pick = self._transit(pick, rng)
         transfer, place = self._transfer(pick, place, carrying, rng)
         return [transit, *pick, transfer, *place]
@@ -128,10 +130,35 @@ class TaskMotion:
 
     def _more_limits(self, part: Part) -> tuple[PathLimit, ...]:
         """What limits a part beside the robot's joints."""
-        max_speed = self.task.carry.max_speed
-        if max_speed is None or not part.attached:
-            return ()
-        return (ToolSpeed(self.problem.robot, max_speed),)
+        limits: list[PathLimit] = []
+        robot, max_speed = self.problem.robot, self.task.carry.max_speed
+        if part.attached and max_speed is not None:
+            limits.append(ToolSpeed(robot, max_speed))
+        if self.problem.planner.torque:
+            limits.append(self._torque_limit(part))
+        return tuple(limits)
+
+    def _require_strength(self, *parts: Part) -> None:
+        """Refuse parts at whose ends the arm cannot stand still, before all planning.
+
+        Raises:
+            BlockedError: naming the joint.
+        """
+        for part in parts if self.problem.planner.torque else ():
+            limit = self._torque_limit(part)
+            for q in (part.path[0], part.path[-1]):
+                weak = limit.too_weak(q)
+                if weak:
+                    raise BlockedError(part.name, weak)
+
+    def _torque_limit(self, part: Part) -> TorqueLimit:
+        """The limit of torques with what a part carries, if that has a mass."""
+        robot, name = self.problem.robot, self.task.object
+        mass = self.problem.object(name).mass
+        if name not in part.attached or mass is None:
+            return TorqueLimit(robot)
+        inertia = inertia_of(self.world.scenery.objects[name], mass)
+        return TorqueLimit(robot, pin.SE3(part.attached[name]).act(inertia))
 
     def _turns(self, parts: list[Part]) -> Array:
         """Whole turns of the arm's joints (m, nq) that keep all parts within limits."""

@@ -25,6 +25,7 @@ from mmplan.planning.timing import (
     time_path,
 )
 from mmplan.planning.tool_speed import ToolSpeed
+from mmplan.planning.torque import TorqueLimit
 from mmplan.planning.upright import UprightRule, UprightWorld
 from mmplan.planning.world import PlanningWorld
 
@@ -44,6 +45,7 @@ __all__ = [
     "TimingResult",
     "TimingSettings",
     "ToolSpeed",
+    "TorqueLimit",
     "TurnInPlace",
     "UprightRule",
     "UprightWorld",

@@ -21,9 +21,10 @@ class Outcome(IntEnum):
     JOINT_LIMITS = 3  # it does, but only beyond its joint limits
     NO_CONTACT = 4  # the hand does not close on the object
     LOW_QUALITY = 5  # the grasp quality is below the threshold
-    COLLISION = 6  # the robot hits something with the hand closed
-    HAND_OPEN_COLLISION = 7  # only the opened hand does
-    SCORED = 8
+    NOT_CARRIED = 6  # held so, the object cannot be upright where it must become so
+    COLLISION = 7  # the robot hits something with the hand closed
+    HAND_OPEN_COLLISION = 8  # only the opened hand does
+    SCORED = 9
 
     @property
     def label(self) -> str:
@@ -36,6 +37,7 @@ _LABELS = {
     Outcome.BASE_COLLISION: "base in collision",
     Outcome.NO_CONTACT: "hand does not close on the object",
     Outcome.LOW_QUALITY: "grasp quality too low",
+    Outcome.NOT_CARRIED: "cannot be carried upright",
     Outcome.NO_IK: "out of the arm's reach",
     Outcome.JOINT_LIMITS: "beyond the joint limits",
     Outcome.COLLISION: "in collision",

@@ -12,6 +12,7 @@ from mmplan.grasps import GraspFamily
 from mmplan.problem import Problem, Task, WeightedTerm
 from mmplan.scoring.branches import Branches, BranchSearch
 from mmplan.scoring.breakdown import Breakdown, links_of
+from mmplan.scoring.carriable import Carriable
 from mmplan.scoring.clutter import Clutter
 from mmplan.scoring.feasibility import Arms, Feasibility, Overlap
 from mmplan.scoring.grasp_quality import Hold, quality_measure
@@ -80,7 +81,7 @@ class Holds(NamedTuple):
     opened: Array  # (n, hand joints), before it closes
     closed: Array  # (n, hand joints), on the object
     quality: Array  # G, (n,)
-    outcome: npt.NDArray[np.int8]  # NO_CONTACT, LOW_QUALITY or SCORED, (n,)
+    outcome: npt.NDArray[np.int8]  # NO_CONTACT, LOW_QUALITY, NOT_CARRIED, SCORED
 
 
 class ScoreFunction:
@@ -108,6 +109,8 @@ class ScoreFunction:
         }
         self.closer = HandCloser(robot, world.scenery.objects[task.object])
         self._quality = quality_measure(problem, task, family, self.closer)
+        T_world_start = world.standing[task.object]
+        self._carriable = Carriable(problem, task, T_world_start)
         self._centre = world.scenery.centre_of_mass(task.object)
         self.clutter = Clutter(
             robot, {e: w.without(task.object) for e, w in self.worlds.items()}
@@ -215,6 +218,9 @@ class ScoreFunction:
         quality = self._quality(Hold(grasps, T_object_tool, closings))
         low = quality < self.problem.score.min_quality
         outcome = np.where(closings.touches & low, Outcome.LOW_QUALITY, outcome)
+        held = np.flatnonzero(outcome == Outcome.SCORED)
+        dropped = held[~self._carriable(T_object_tool[held])]
+        outcome[dropped] = Outcome.NOT_CARRIED
         return np.concatenate(
             [
                 T_object_tool.reshape(-1, 16),

@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from mmplan.carry import Region
-from mmplan.collision import CollisionWorld
+from mmplan.collision import CollisionWorld, Scenery
 from mmplan.exceptions import VerificationError
 from mmplan.plan import Plan
 from mmplan.problem import Problem
@@ -22,6 +22,7 @@ from mmplan.verification.ledger import Finding, Ledger
 from mmplan.verification.limits import curve_of, motion_faults
 from mmplan.verification.proof import SegmentProof
 from mmplan.verification.structure import structure_faults
+from mmplan.verification.torques import torque_peaks
 from mmplan.verification.touching import TouchRule
 from mmplan.verification_report import Clearance, Fault, VerificationReport
 
@@ -64,12 +65,14 @@ def examine(plan: Plan, problem: Problem) -> VerificationReport:
         if _begins_to_carry(stages, number):
             faults.extend(grasp_faults(stage, bodies))
     peaks, rule_faults = carrying_peaks(stages, problem, travel)
+    hardest, torque_faults = torque_peaks(stages, problem, worlds.scenery)
     faults = [
         *_proof_faults(ledger, stages),
         *motion_faults(stages, problem),
         *base_faults(stages, problem),
         *carrying_faults(stages, problem),
         *rule_faults,
+        *torque_faults,
         *faults,
     ]
     return VerificationReport(
@@ -78,7 +81,7 @@ def examine(plan: Plan, problem: Problem) -> VerificationReport:
         proven=_proven(ledger),
         queries=ledger.queries,
         intervals=ledger.intervals,
-        peaks=peaks,
+        peaks=(*peaks, *hardest),
     )
 
 
@@ -94,6 +97,11 @@ class _Worlds:
         self._tasks = problem.tasks
         self._start = CollisionWorld.of_problem(problem)
         self._made: dict[_State, Bodies] = {}
+
+    @property
+    def scenery(self) -> Scenery:
+        """The solids of everything but the robot."""
+        return self._start.scenery
 
     def bodies_of(self, stage: Stage) -> Bodies:
         """The bodies of the world during a segment, with no touch permitted."""

@@ -5,12 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
+from mmplan.carry import Carry, Region, Upright
 from mmplan.collision import CollisionWorld
 from mmplan.grasps import Axis, GraspFamily
+from mmplan.kinematics import joint_placements
 from mmplan.problem import Obstacle, ScoreSettings
 from mmplan.scoring import End, Outcome, ScoreFunction
+from mmplan.scoring.carriable import Carriable
 from mmplan.shapes import Array, Box
 from tests.honest import shift
 from tests.tabletop import cup_problem
@@ -55,6 +59,7 @@ def test_outcomes_are_in_the_order_of_the_tests() -> None:
         "JOINT_LIMITS",
         "NO_CONTACT",
         "LOW_QUALITY",
+        "NOT_CARRIED",
         "COLLISION",
         "HAND_OPEN_COLLISION",
         "SCORED",
@@ -128,6 +133,45 @@ def test_a_quality_beyond_its_range_is_a_mistake_of_the_family() -> None:
         ValueError, match=r"Boasting: grasp quality outside of \[0, 1\]"
     ):
         outcome(cup_score(family=Boasting(along=(-0.05, 0.06))))
+
+
+def on_its_side(*regions: Region) -> ScoreFunction:
+    """The cup must lie on its side on its way, but in some regions."""
+    problem = cup_problem()
+    upright = Upright(0.2, np.array([1.0, 0.0, 0.0]), regions)
+    task = replace(problem.tasks[0], carry=Carry(upright))
+    world = CollisionWorld.of_problem(problem)
+    return ScoreFunction(problem, task, world, ANY_HEIGHT)
+
+
+def test_an_object_that_cannot_turn_where_it_must() -> None:
+    """It can where the arm reaches, and need not where all of its way is exempt."""
+    start, goal = ((0.4, y, 0.88) for y in (0.5, 0.0))
+    small, large = (0.3, 0.3, 0.3), (9.0, 9.0, 9.0)
+    at_start, at_goal = (Region("low", small, shift(*p)) for p in (start, goal))
+    assert outcome(on_its_side(at_start, at_goal)) == Outcome.SCORED
+    too_high = Region("high", small, shift(0.4, 0.5, 5.0))
+    assert outcome(on_its_side(too_high)) == Outcome.NOT_CARRIED
+    assert outcome(on_its_side(Region("all", large, np.eye(4)))) == Outcome.SCORED
+
+
+def test_no_grasp_is_dropped_that_an_arm_can_carry_by() -> None:
+    """Whatever an arm holds upright in a region passes, drawn independently."""
+    region = Region("region", (9.0, 9.0, 0.4), shift(0.0, 0.0, 0.6))
+    score = on_its_side(region)
+    problem, task = score.problem, score.task
+    robot, rng = problem.robot, np.random.default_rng(7)
+    q = np.tile(problem.q_start, (4000, 1))
+    arm = robot.arm
+    q[:, arm.indices] = rng.uniform(arm.lower, arm.upper, (4000, len(arm)))
+    T = joint_placements(robot.model, q)[:, robot.tool_joint] @ robot.T_joint_tool
+    T = T[np.abs(T[:, 2, 3] - 0.6) < 0.2][:200]  # the object's origin at the tool's
+    lying = pin.rpy.rpyToMatrix(0.0, -np.pi / 2, 0.4)  # x is up
+    T_object_tool = np.tile(np.eye(4), (len(T), 1, 1))
+    T_object_tool[:, :3, :3] = lying.T @ T[:, :3, :3]
+    start = problem.object(task.object).T_world_object
+    assert len(T) > 100
+    assert Carriable(problem, task, start)(T_object_tool).all()
 
 
 def test_a_hand_in_the_table() -> None:
