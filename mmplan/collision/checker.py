@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 
 # A pair of the robot's own bodies that was apart so often gets a table, see
 # `clear_cells`.
-_OFTEN = 1000
+_OFTEN = 200
+# Most motions that collide do so at one of these places.
+_PLACES = np.array([[1.0], [0.5], [0.25], [0.75]])
 # Pairs that come so near to what is allowed that nothing is settled within a stretch
 # on which they move no farther than this count as colliding, m.
 _SMALLEST = 1e-5
@@ -98,6 +100,8 @@ class Checker:
 
     def motion_collides(self, q: Array, dq: Array) -> bool:
         """Whether anything collides on the way from q (nq,) to q + dq."""
+        if self.any_collision(q + _PLACES * dq):
+            return True
         stretches = self._broadphase.on_the_way(q, dq)
         return bool(stretches) and not self._stay_apart(q, dq, stretches)
 
@@ -108,22 +112,23 @@ class Checker:
         carried the bodies so far (Schwarzer, Saha, Latombe, 2005); what is not settled
         by that is looked at in turn.
         """
-        ways = (self._levers @ np.abs(dq)).tolist()
-        while stretches:
-            pair, start, end = stretches.pop(0)
-            middle, way = (start + end) / 2.0, ways[pair]
+        span = np.abs(dq)
+        todo = [tuple(stretch) for stretch in reversed(stretches)]
+        while todo:
+            pair, start, end = todo.pop()
+            middle, way = (start + end) / 2.0, float(self._levers[pair] @ span)
             self._place(q + middle * dq)
             found = pin.computeDistance(self._geometry, self._geometry_data, pair)
             gap = found.min_distance + self._allowed_depth[pair] - TOUCH
             if gap <= 0.0:
                 return False
+            self._note_apart(pair)
             free = gap / way if way > 0.0 else 1.0
             if middle - free <= start:
                 continue
             if (end - start) * way <= _SMALLEST:
                 return False
-            stretches.append(Stretch(pair, start, middle - free))
-            stretches.append(Stretch(pair, middle + free, end))
+            todo += [(pair, start, middle - free), (pair, middle + free, end)]
         return True
 
     def overlaps(self, q: Array) -> Iterator[tuple[int, float]]:
@@ -157,12 +162,16 @@ class Checker:
     def _collides(self, pair: int) -> bool:
         hit = bool(pin.computeCollision(self._geometry, self._geometry_data, pair))
         if not hit:
-            self._apart[pair] += 1
-            if self._apart[pair] == _OFTEN:
-                known = clear_cells(self._robot, *self._pairs[pair].tolist())
-                if known is not None:
-                    self._broadphase.learn(pair, known)
+            self._note_apart(pair)
         return hit
+
+    def _note_apart(self, pair: int) -> None:
+        """Look closer at pairs that need to be looked at often and never touch."""
+        self._apart[pair] += 1
+        if self._apart[pair] == _OFTEN:
+            known = clear_cells(self._robot, *self._pairs[pair].tolist())
+            if known is not None:
+                self._broadphase.learn(pair, known)
 
 
 def make_broadphase(

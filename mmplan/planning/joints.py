@@ -52,6 +52,8 @@ class MovingJoints:
 
     def with_followers(self, q: Array) -> Array:
         """Configurations (..., nq) with the followers where their leaders take them."""
+        if not self.followers:
+            return q
         q = q.copy()
         for follower, leader, multiplier, offset in self.followers:
             q[..., follower] = multiplier * q[..., leader] + offset

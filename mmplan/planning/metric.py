@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -34,10 +35,15 @@ class Metric:
 
     def turns(self, q: Array, q_near: Array) -> Array:
         """The whole turns (..., nq) to add to q (..., nq) to be nearest to q_near."""
-        if not self.wraps.any():
+        if not self.any_wraps:
             return np.zeros(np.broadcast_shapes(q.shape, q_near.shape))
         turns: Array = np.where(self.wraps, _TURN * np.rint((q_near - q) / _TURN), 0.0)
         return turns
+
+    @cached_property
+    def any_wraps(self) -> bool:
+        """Whether there is a joint that wraps."""
+        return bool(self.wraps.any())
 
     def distances(self, q: Array, q_from: Array) -> Array:
         """The lengths (...,) of straight ways between configurations (..., nq)."""
@@ -51,6 +57,6 @@ class Metric:
         The first waypoint stays as it is.
         """
         path = path.copy()
-        for i in range(1, len(path)) if self.wraps.any() else ():
+        for i in range(1, len(path)) if self.any_wraps else ():
             path[i] += self.turns(path[i], path[i - 1])
         return path

@@ -37,13 +37,15 @@ class ScaledStates:
         self.metric = metric
         self._straight = joints.indices[~joints.wraps]
         self._round = joints.indices[joints.wraps]
+        self._real = not len(self._round)
+        self._size = len(self._straight)
         self._scales = metric.weights[self._straight]
 
     def configuration(self, state: ob.State) -> Array:
         """The configuration (nq,) of a state; joints that wrap are in [-π, π]."""
         q = self._q_still.copy()
-        k = len(self._straight)
-        if not len(self._round):
+        k = self._size
+        if self._real:
             q[self._straight] = np.array(state[0:k]) / self._scales
         else:
             if k:
@@ -122,8 +124,10 @@ class WorldMotions(ob.MotionValidator):
         """OMPL's question; it takes the start as checked."""
         q_from = self._states.configuration(start)
         q_to = self._states.configuration(end)
-        turns = self._states.metric.turns(q_to, q_from)
-        return self._checker.edge_free(q_from, q_to + turns)
+        metric = self._states.metric
+        if metric.any_wraps:
+            q_to = q_to + metric.turns(q_to, q_from)
+        return self._checker.edge_free(q_from, q_to)
 
 
 def space_information(
