@@ -113,7 +113,7 @@ class Checker:
         by that is looked at in turn.
         """
         span = np.abs(dq)
-        todo = [tuple(stretch) for stretch in reversed(stretches)]
+        todo = stretches[::-1]
         while todo:
             pair, start, end = todo.pop()
             middle, way = (start + end) / 2.0, float(self._levers[pair] @ span)
@@ -128,7 +128,8 @@ class Checker:
                 continue
             if (end - start) * way <= _SMALLEST:
                 return False
-            todo += [(pair, start, middle - free), (pair, middle + free, end)]
+            todo.append(Stretch(pair, start, middle - free))
+            todo.append(Stretch(pair, middle + free, end))
         return True
 
     def overlaps(self, q: Array) -> Iterator[tuple[int, float]]:
