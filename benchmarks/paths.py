@@ -51,8 +51,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = _parser().parse_args(arguments)
     robot = contestant(options.robot)
     settings = PlannerSettings(time_limit=TIME_LIMIT)
-    if options.resolution is not None:
-        settings = replace(settings, resolution=options.resolution)
+    given = {k: getattr(options, k) for k in ("resolution", "range", "motion_check")}
+    settings = replace(settings, **{k: v for k, v in given.items() if v is not None})
     competitors = [own_competitor(name, settings) for name in options.planners]
     with (
         ExitStack() as stack,
@@ -86,7 +86,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--runs", type=int, default=20)
     parser.add_argument("--families", type=_names, default=[])
     parser.add_argument("--planners", type=_names, default=["RRTConnect"])
-    parser.add_argument("--resolution", type=float, metavar="M", help="of mmplan's own")
+    parser.add_argument("--resolution", type=float, metavar="M", help="of mmplan's")
+    parser.add_argument("--range", type=float, metavar="M", help="of mmplan's")
+    parser.add_argument("--motion-check", choices=("sampled", "continuous"))
     parser.add_argument("--peers", type=_peers, default=["naive"])
     parser.add_argument(
         "--peer-python",

@@ -5,12 +5,25 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 
 def add_json(command: argparse.ArgumentParser) -> None:
     """Add the option that asks for results for programs."""
     command.add_argument("--json", action="store_true", help="results for programs")
+
+
+def add_results_folder(command: argparse.ArgumentParser) -> None:
+    """Add the option that says where the results of a benchmark are."""
+    text = "folder of the results"
+    command.add_argument("-o", "--output", type=Path, required=True, help=text)
+
+
+def add_quiet(command: argparse.ArgumentParser) -> None:
+    """Add the option that leaves the terminal alone."""
+    text = "no progress and no result on the terminal"
+    command.add_argument("--quiet", action="store_true", help=text)
 
 
 def natural(text: str) -> int:

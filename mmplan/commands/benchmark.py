@@ -8,7 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from mmplan.commands import benchmark_paths
-from mmplan.commands.arguments import add_json, listed, natural, positive
+from mmplan.commands.arguments import (
+    add_json,
+    add_quiet,
+    add_results_folder,
+    listed,
+    natural,
+    positive,
+)
 from mmplan.commands.results import SOLVED, print_json
 
 REPORT = ("benchmark", "report")
@@ -25,14 +32,11 @@ def add(commands: Any) -> None:
         description=f"{text}; a benchmark that was interrupted goes on where it was.",
     )
     run.add_argument("scenes", nargs="+", metavar="scene", help="scene files or names")
-    run.add_argument(
-        "-o", "--output", type=Path, required=True, help="folder of the results"
-    )
+    add_results_folder(run)
     _add_contest(run)
     _add_scheduler(run)
     add_json(run)
-    quiet = "no progress and no result on the terminal"
-    run.add_argument("--quiet", action="store_true", help=quiet)
+    add_quiet(run)
     run.set_defaults(run=_run)
     benchmark_paths.add(commands)
     _add_report(commands)

@@ -7,7 +7,15 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mmplan.commands.arguments import above_zero, add_json, listed, natural, positive
+from mmplan.commands.arguments import (
+    above_zero,
+    add_json,
+    add_quiet,
+    add_results_folder,
+    listed,
+    natural,
+    positive,
+)
 from mmplan.commands.results import SOLVED, print_json
 
 if TYPE_CHECKING:
@@ -15,6 +23,9 @@ if TYPE_CHECKING:
 
 # What stands in argv for the one name `benchmark paths`.
 PATHS = ("benchmark", "paths")
+
+# Options that are settings of the planner, which has defaults of its own.
+_SETTINGS = ("range", "motion_check", "resolution", "shortcuts", "time_limit")
 
 
 def add(commands: Any) -> None:
@@ -27,14 +38,11 @@ def add(commands: Any) -> None:
         description=f"{text}; a benchmark that was interrupted goes on where it was.",
     )
     run.add_argument("problems", type=Path, metavar="FILE", help=".json or .json.gz")
-    run.add_argument(
-        "-o", "--output", type=Path, required=True, help="folder of the results"
-    )
+    add_results_folder(run)
     add_choice(run)
     _add_settings(run)
     add_json(run)
-    quiet = "no progress and no result on the terminal"
-    run.add_argument("--quiet", action="store_true", help=quiet)
+    add_quiet(run)
     run.set_defaults(run=_run)
 
 
@@ -74,6 +82,17 @@ def add_choice(run: argparse.ArgumentParser) -> None:
 
 def _add_settings(run: argparse.ArgumentParser) -> None:
     run.add_argument(
+        "--range",
+        type=above_zero,
+        metavar="M",
+        help="the longest edge of the planner; default: that of scenes",
+    )
+    run.add_argument(
+        "--motion-check",
+        choices=("sampled", "continuous"),
+        help="how edges are checked; default: that of scenes",
+    )
+    run.add_argument(
         "--resolution",
         type=above_zero,
         metavar="M",
@@ -104,9 +123,7 @@ def _run(options: argparse.Namespace) -> int:
     from mmplan.terminal import progress_display, show
 
     given = {
-        key: value
-        for key in ("resolution", "shortcuts", "time_limit")
-        if (value := getattr(options, key)) is not None
+        key: value for key in _SETTINGS if (value := getattr(options, key)) is not None
     }
     settings = PlannerSettings(**given)
     competitors = [own_competitor(name, settings) for name in options.planners]
