@@ -7,7 +7,8 @@
 
 Needs numpy and mujoco. Every 2 ms of the plan MuJoCo says what touches what, links of
 the robot among themselves included. The replay fails if anything does but the hand, the
-object and what the object stands on, or if the object is not at its goal in the end.
+object and what the object stands on, if an object is not where the hand takes it, or if
+it is not at its goal in the end.
 
 MuJoCo leaves out links that a joint connects, and this program those that overlap
 before the robot moves: neighbours whose bodies are larger than they. MuJoCo takes
@@ -84,6 +85,7 @@ class Replay:
         self.objects = list(first["objects"])
         self.starts = {n: model.joint(n).qposadr[0] for n in self.objects}
         self.goals = last["objects"]  # they do not move after the last release
+        self.jumps = dict.fromkeys(self.objects, 0.0)  # m, between two segments
 
     def run(self, segment: dict[str, Any]) -> Iterator[float]:
         """Go through the times of a segment; the model is as the plan says at each."""
@@ -93,7 +95,10 @@ class Replay:
             mujoco.mj_kinematics(self.model, self.data)
             for name, T in segment["objects"].items():
                 held = segment["attached"].get(name)
-                self.place(name, np.array(T) if held is None else self.carried(held))
+                at = np.array(T) if held is None else self.carried(held)
+                if time == 0.0:
+                    self.jumps[name] = max(self.jumps[name], self.away(name, at))
+                self.place(name, at)
             mujoco.mj_forward(self.model, self.data)
             yield time
 
@@ -129,11 +134,15 @@ class Replay:
             if not (rests or (links and links <= hand and things)):
                 yield f"{' touches '.join(pair)}: {1000 * depth:.2f} mm deep"
         for name, goal in self.goals.items():
-            start = self.starts[name]
-            at = self.data.qpos[start : start + 3]
-            away = float(np.linalg.norm(at - np.array(goal)[:3, 3]))
-            if away > GOAL_TOLERANCE:
-                yield f"{name} is {1000 * away:.1f} mm from its goal"
+            if self.away(name, np.array(goal)) > GOAL_TOLERANCE:
+                yield f"{name} is {self.away(name, np.array(goal)):.4f} m from its goal"
+            if self.jumps[name] > GOAL_TOLERANCE:
+                yield f"{name} jumps by {self.jumps[name]:.4f} m when taken or left"
+
+    def away(self, name: str, T: np.ndarray) -> float:
+        """How far an object is from a pose (4, 4), m."""
+        start = self.starts[name]
+        return float(np.linalg.norm(self.data.qpos[start : start + 3] - T[:3, 3]))
 
     def links(self, names: Iterable[str]) -> set[str]:
         """Those of some names that are links of the robot."""

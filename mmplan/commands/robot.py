@@ -189,7 +189,11 @@ def _silent(stage: str) -> None:
 def _urdf(options: argparse.Namespace) -> int:
     from xml.etree import ElementTree as ET
 
+    from mmplan.files.urdf_edit import rename_link
+
     root = ET.fromstring(_described(options.robot).urdf)
+    # The arms of some URDFs stand on one. MuJoCo takes it for the world itself.
+    rename_link(root, "world", "world_link")
     ET.indent(root)
     print(ET.tostring(root, encoding="unicode"))
     return SOLVED

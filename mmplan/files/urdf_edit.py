@@ -139,6 +139,14 @@ def named_meshes(urdf: ET.Element, files: Mapping[str, Path]) -> ET.Element:
     return root
 
 
+def rename_link(root: ET.Element, name: str, other: str) -> None:
+    """Give a link another name, wherever it is named; nothing if there is none."""
+    for element in root.iter():
+        key = "name" if element.tag == "link" else "link"
+        if element.tag in ("link", "parent", "child") and element.get(key) == name:
+            element.set(key, other)
+
+
 def joints_by_name(root: ET.Element) -> dict[str, ET.Element]:
     """The joints in the order of the URDF."""
     return dict(_named(root, "joint"))

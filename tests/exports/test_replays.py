@@ -7,7 +7,9 @@ import subprocess
 import sys
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree as ET
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -72,6 +74,32 @@ def test_mujoco_agrees_that_the_plan_does_what_it_promises(in_mujoco: Path) -> N
     done = replay_in_mujoco(in_mujoco)
     assert (done.returncode, done.stderr) == (0, "")
     assert "every object is at its goal" in done.stdout
+
+
+# Of these, arms of the second and the third stand on a link called `world`.
+@pytest.mark.parametrize("name", ["puma_mobile", "ur5_mobile", "xarm7_mobile"])
+def test_the_urdf_of_the_whole_robot_moves_the_tool_as_planned(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["robot", "urdf", name]) == 0
+    root = ET.fromstring(capsys.readouterr().out)
+    for link in root.findall("link"):
+        for body in (*link.findall("visual"), *link.findall("collision")):
+            link.remove(body)
+    settings = {"fusestatic": "false", "boundmass": "1e-6", "boundinertia": "1e-6"}
+    ET.SubElement(ET.SubElement(root, "mujoco"), "compiler", settings)
+    model = mujoco.MjModel.from_xml_string(ET.tostring(root, encoding="unicode"))
+    data, robot = mujoco.MjData(model), load_robot(name)
+    rng = np.random.default_rng(0)
+    low, high = robot.model.lowerPositionLimit, robot.model.upperPositionLimit
+    q = rng.uniform(np.maximum(low, -3.0), np.minimum(high, 3.0))
+    places = [model.joint(n).qposadr[0] for n in list(robot.model.names)[1:]]
+    data.qpos[places] = q
+    mujoco.mj_kinematics(model, data)
+    tool = data.body("tool")
+    T_world_tool = robot.tool_pose(q)
+    assert tool.xpos == pytest.approx(T_world_tool[:3, 3], abs=1e-6)
+    assert tool.xmat == pytest.approx(T_world_tool[:3, :3].ravel(), abs=1e-6)
 
 
 def tampered(folder: Path, name: str, plan: dict[str, Any]) -> Path:
