@@ -48,6 +48,7 @@ def contacts_of(
         np.full((*shape, len(_SIDES), 3), np.nan),
         np.full((*shape, 3), np.nan),
     )
+    found: list[tuple[int, int, _Patch]] = []
     for column, placed in enumerate(fingers):
         gaps = [thing.gaps(geometry, T) for geometry, T in placed]
         for row in np.flatnonzero(touches).tolist():
@@ -57,39 +58,61 @@ def contacts_of(
                 for patch in _patches(thing, geometry, T[row], gap[row])
             ]
             if patches:
-                _enter(contacts, (row, column), patches)
+                found.append((row, column, _together(patches)))
+    if found:
+        rows, columns, whole = zip(*found, strict=True)
+        normals = np.array([patch.normal for patch in whole])
+        contacts.normals[rows, columns] = normals
+        corners = [patch.corners for patch in whole]
+        contacts.corners[rows, columns] = _four_of(corners, normals)
     return contacts
 
 
-def _enter(contacts: Contacts, place: tuple[int, int], patches: list[_Patch]) -> None:
-    """Put all patches together into the contacts."""
+def _together(patches: list[_Patch]) -> _Patch:
+    """Those of some patches that are flush with the nearest, as one."""
     nearest = min(patch.gap for patch in patches)
     flush = [patch for patch in patches if patch.gap <= nearest + _SAME_PLANE]
-    normal = np.sum([patch.normal for patch in flush], axis=0)
-    normal /= np.sqrt(normal @ normal)
-    contacts.normals[place] = normal
-    corners = np.concatenate([patch.corners for patch in flush])
-    contacts.corners[place] = _four_of(corners, normal)
+    normal = flush[0].normal
+    if len(flush) > 1:
+        normal = np.sum([patch.normal for patch in flush], axis=0)
+        normal /= np.sqrt(normal @ normal)
+    return _Patch(np.concatenate([p.corners for p in flush]), normal, nearest)
 
 
-def _four_of(corners: Array, normal: Array) -> Array:
-    """Four (4, 3) of the corners (c, 3) of a patch.
+def _four_of(patches: list[Array], normals: Array) -> Array:
+    """Four (n, 4, 3) of the corners (c, 3) of each patch, with normals (n, 3).
 
     Those farthest out between the two axes of the patch, the longer and the shorter,
     and at least as far out as those of a soft pad.
     """
-    middle = corners.sum(axis=0) / len(corners)
-    away = corners - middle
-    along = np.linalg.eigh(away.T @ away)[1][:, -1]
-    if abs(along @ normal) > _ACROSS:  # a point has no axes
-        along = np.eye(3)[np.argmin(np.abs(normal))]
-    along = along - (along @ normal) * normal
-    along /= np.sqrt(along @ along)
-    axes = np.array([along, np.cross(normal, along)])
-    flat = away @ axes.T
-    farthest = flat[np.argmax(_SIDES @ flat.T, axis=1)]
-    four: Array = middle + _SIDES * np.maximum(_SIDES * farthest, _SOFT) @ axes
-    return four
+    counts = np.array([len(corners) for corners in patches])
+    starts = np.cumsum(counts) - counts
+    corners = np.concatenate(patches)
+    middles = np.add.reduceat(corners, starts) / counts[:, None]
+    away = corners - np.repeat(middles, counts, axis=0)
+    spread = np.add.reduceat(away[:, :, None] * away[:, None, :], starts)
+    axes = _axes(spread, normals)
+    # All patches with as many corners as the largest: the last of them once more.
+    each = np.minimum(np.arange(counts.max()), counts[:, None] - 1) + starts[:, None]
+    flat = np.einsum("nci,nai->nca", away[each], axes)
+    outermost = np.argmax(flat @ _SIDES.T, axis=1)
+    farthest = np.take_along_axis(flat, outermost[:, :, None], axis=1)
+    four = middles[:, None] + _SIDES * np.maximum(_SIDES * farthest, _SOFT) @ axes
+    return np.asarray(four)
+
+
+def _axes(spread: Array, normals: Array) -> Array:
+    """The longer and the shorter axis (n, 2, 3) of patches, by their spread (n, 3, 3).
+
+    They are across the normals (n, 3). A point has no axes and gets any.
+    """
+    along = np.linalg.eigh(spread)[1][:, :, -1]
+    ahead = np.einsum("ni,ni->n", along, normals)
+    least = np.eye(3)[np.argmin(np.abs(normals), axis=1)]
+    along = np.where(np.abs(ahead)[:, None] > _ACROSS, least, along)
+    along = along - np.einsum("ni,ni->n", along, normals)[:, None] * normals
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    return np.stack([along, np.cross(normals, along)], axis=1)
 
 
 def _patches(
