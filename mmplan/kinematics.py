@@ -97,6 +97,17 @@ class FrameJacobians:
         return J
 
 
+def motion_axes(model: pin.Model) -> Array:
+    """The twists (linear, angular) of all joints in their frames, (njoints, 6)."""
+    axes = np.zeros((model.njoints, 6))
+    data = model.createData()
+    pin.computeJointJacobians(model, data, pin.neutral(model))
+    for joint in range(1, model.njoints):
+        J = pin.getJointJacobian(model, data, joint, pin.LOCAL)
+        axes[joint] = J[:, model.joints[joint].idx_v]
+    return axes
+
+
 def motion_axis(model: pin.Model, joint: int) -> Array:
     """The twist (linear, angular) of a joint of one degree of freedom, (6,)."""
     data = model.joints[joint].createData()

@@ -12,7 +12,7 @@ import pinocchio as pin
 
 from mmplan.collision.assembly import Assembly, Body
 from mmplan.collision.broadphase import Broadphase
-from mmplan.collision.clear_cells import clear_cells
+from mmplan.collision.clear_cells import clear_cells, clear_cells_made
 from mmplan.collision.levers import pair_levers
 from mmplan.collision.pairs import Indices, Stretch, Suspects
 from mmplan.collision.requests import TOUCH, make_exact
@@ -61,6 +61,12 @@ class Checker:
             self._levers,
             margin,
         )
+        made = clear_cells_made(robot)
+        for pair, ends in enumerate(
+            map(tuple, assembly.pairs.tolist() if made else ())
+        ):
+            if ends in made:
+                self._broadphase.learn(pair, made[ends])
         # How often each pair of the robot's own bodies was apart; others never count.
         own = (assembly.pairs < robot.geometry.ngeoms).all(axis=1)
         self._apart = np.where(own, 0, np.iinfo(np.int64).min).tolist()
@@ -85,7 +91,14 @@ class Checker:
 
     def any_collision(self, q: Array) -> bool:
         """Whether any of the configurations (n, nq) is in collision."""
-        return any(self._collides(pair) for pair in self._suspects(q))
+        placed = -1
+        for row, pair in self._broadphase.likeliest(q):
+            if row != placed:
+                self._place(q[row])
+                placed = row
+            if self._collides(pair):
+                return True
+        return False
 
     def steps_collide(self, q: Array, dq: Array, steps: int) -> bool:
         """Whether any of q + k / steps · dq (nq,), k = 1, ..., steps, collides."""
@@ -134,19 +147,11 @@ class Checker:
 
     def overlaps(self, q: Array) -> Iterator[tuple[int, float]]:
         """Pairs that collide at q (nq,): index and depth (m)."""
-        for pair in self._suspects(np.asarray(q)[None]):
+        self._place(q)
+        for _, pair in self._broadphase.likeliest(np.asarray(q)[None]):
             if self._collides(pair):
                 found = pin.computeDistance(self._geometry, self._geometry_data, pair)
                 yield pair, max(0.0, -float(found.min_distance))
-
-    def _suspects(self, q: Array) -> Iterator[int]:
-        """Pairs that may touch, with the bodies placed where they may."""
-        placed = -1
-        for row, pair in self._broadphase.likeliest(q):
-            if row != placed:
-                self._place(q[row])
-                placed = row
-            yield pair
 
     def _place(self, q: Array) -> None:
         pin.updateGeometryPlacements(

@@ -9,8 +9,8 @@ no further look at these bodies, whatever else the robot does.
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import pinocchio as pin
@@ -36,9 +36,27 @@ class ClearCells(NamedTuple):
     clear: Flags
 
 
-@lru_cache(maxsize=1024)
+# The tables made so far; they hold in every world.
+_MADE: WeakKeyDictionary[Robot, dict[tuple[int, int], ClearCells]] = WeakKeyDictionary()
+
+
+def clear_cells_made(robot: Robot) -> dict[tuple[int, int], ClearCells]:
+    """The tables that were made for pairs of a robot's bodies."""
+    return _MADE.setdefault(robot, {})
+
+
 def clear_cells(robot: Robot, first: int, second: int) -> ClearCells | None:
     """The table of two bodies of a robot's geometry; None if too many joints count."""
+    made = clear_cells_made(robot)
+    if (first, second) not in made:
+        table = _make(robot, first, second)
+        if table is None:
+            return None
+        made[first, second] = table
+    return made[first, second]
+
+
+def _make(robot: Robot, first: int, second: int) -> ClearCells | None:
     model, bodies = robot.model, robot.geometry.geometryObjects
     pair = np.array([[first, second]])
     lever = pair_levers(model, robot.geometry, pair)[0]

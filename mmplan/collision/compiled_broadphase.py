@@ -85,7 +85,7 @@ class CompiledBroadphase:
             chunk = q[start : start + _CHUNK]
             T = kernels.joint_poses(chunk, self._tree, self._basis)
             found, depth = self._find(chunk, T)
-            for row, pair in found[np.argsort(-depth), :2].tolist():
+            for row, pair, _ in _deepest_first(found, depth):
                 yield row + start, pair
 
     def on_steps(self, q: Array, dq: Array, steps: int) -> list[tuple[int, int]]:
@@ -94,7 +94,7 @@ class CompiledBroadphase:
         At q + k / steps · dq (nq,), k = 1, ..., steps.
         """
         found, depth = self._follow(q, dq, steps)
-        return [(k, pair) for pair, k, _ in found[np.argsort(-depth)].tolist()]
+        return [(k, pair) for pair, k, _ in _deepest_first(found, depth)]
 
     def on_the_way(self, q: Array, dq: Array) -> list[Stretch]:
         """Where pairs may touch on the way from q (nq,) to q + dq, likely ones first.
@@ -104,7 +104,7 @@ class CompiledBroadphase:
         found, depth = self._follow(q, dq, 0)
         return [
             Stretch(pair, first / kernels.PARTS, last / kernels.PARTS)
-            for pair, first, last in found[np.argsort(-depth)].tolist()
+            for pair, first, last in _deepest_first(found, depth)
         ]
 
     def learn(self, pair: int, known: ClearCells) -> None:
@@ -164,6 +164,11 @@ class CompiledBroadphase:
         self._found = np.empty((2 * count, 3), dtype=np.int64)
         self._depth = np.empty(2 * count)
         return False
+
+
+def _deepest_first(found: Indices, depth: Array) -> list[list[int]]:
+    """Finds (k, 3) as lists, those whose boxes overlap the most first."""
+    return (found[depth.argsort()[::-1]] if len(found) > 1 else found).tolist()
 
 
 def _boxes(geometry: pin.GeometryModel, indices: list[int], padding: float) -> Array:

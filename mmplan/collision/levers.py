@@ -14,7 +14,7 @@ import pinocchio as pin
 
 from mmplan.collision.bounds import local_bounds
 from mmplan.collision.pairs import Indices
-from mmplan.kinematics import motion_axis
+from mmplan.kinematics import motion_axes
 from mmplan.shapes import Array
 
 _CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))
@@ -29,11 +29,12 @@ def pair_levers(model: pin.Model, geometry: pin.GeometryModel, pairs: Indices) -
     """
     bodies = geometry.geometryObjects
     used = np.unique(pairs).tolist()
+    axes = motion_axes(model)
     levers = np.zeros((len(bodies), model.nq))
     carried = np.zeros((len(bodies), model.nq), dtype=np.bool_)
     for i in used:
         joint = int(bodies[i].parentJoint)
-        levers[i] = joint_levers(model, joint, body_corners(bodies[i]))
+        levers[i] = joint_levers(model, axes, joint, body_corners(bodies[i]))
         while joint:
             carried[i, model.joints[joint].idx_q] = True
             joint = int(model.parents[joint])
@@ -51,9 +52,10 @@ def body_corners(body: pin.GeometryObject) -> Array:
     return corners
 
 
-def joint_levers(model: pin.Model, joint: int, points: Array) -> Array:
+def joint_levers(model: pin.Model, axes: Array, joint: int, points: Array) -> Array:
     """Bounds (nq,) on how far each joint moves `points` (n, 3) of one joint's frame.
 
+    `axes` are the model's `motion_axes`.
     Goes from the body towards the root. Above its own joint the body is known only as
     a ball: somewhere within `radius` of `points`.
     """
@@ -62,7 +64,7 @@ def joint_levers(model: pin.Model, joint: int, points: Array) -> Array:
     while joint:
         index = model.joints[joint].idx_q
         squares = (points**2).sum(axis=1)
-        linear, angular = np.split(motion_axis(model, joint), 2)
+        linear, angular = axes[joint, :3], axes[joint, 3:]
         arms[index] = float(linear.any())
         if angular.any():
             beside = np.maximum(squares - (points @ angular) ** 2, 0.0)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from mmplan.collision import body_corners, joint_levers
-from mmplan.kinematics import motion_axis
+from mmplan.kinematics import motion_axes
 from mmplan.planning.upright import UprightWorld
 from mmplan.planning.world import PlanningWorld
 from mmplan.shapes import Array, read_only
@@ -44,6 +44,7 @@ class Sweep:
         return np.vstack([self.reach, self.rules])
 
 
+@lru_cache(maxsize=16)
 def sweep_of(world: PlanningWorld) -> Sweep:
     """The lever arms of a robot and of what it carries.
 
@@ -59,14 +60,15 @@ def sweep_of(world: PlanningWorld) -> Sweep:
         if joint:
             known = corners.get(joint, np.empty((0, 3)))
             corners[joint] = np.vstack([known, body_corners(body)])
-    rows = [joint_levers(model, joint, c) for joint, c in corners.items()]
+    axes = motion_axes(model)
+    rows = [joint_levers(model, axes, joint, c) for joint, c in corners.items()]
     return Sweep(
         read_only(_undominated(np.array(rows).reshape(-1, model.nq))),
-        read_only(_rule_rows(world)),
+        read_only(_rule_rows(world, axes)),
     )
 
 
-def _rule_rows(world: PlanningWorld) -> Array:
+def _rule_rows(world: PlanningWorld, axes: Array) -> Array:
     """How far joints move a carried object's origin and turn it, (0 or 2, nq)."""
     if not isinstance(world, UprightWorld):
         return np.zeros((0, world.model.nq))
@@ -74,9 +76,8 @@ def _rule_rows(world: PlanningWorld) -> Array:
     joint = rule.robot.tool_joint
     turns = np.zeros(model.nq)
     for moved in list(model.supports[joint])[1:]:
-        turning = motion_axis(model, moved)[3:].any()
-        turns[model.joints[moved].idx_q] = turning / rule.turn_per_metre
-    return np.array([joint_levers(model, joint, rule.origin[None]), turns])
+        turns[model.joints[moved].idx_q] = axes[moved, 3:].any() / rule.turn_per_metre
+    return np.array([joint_levers(model, axes, joint, rule.origin[None]), turns])
 
 
 def _undominated(rows: Array) -> Array:
