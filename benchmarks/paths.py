@@ -43,7 +43,7 @@ PROBLEMS = Path(__file__).parent / "data" / "panda_motionbenchmaker.json.gz"
 PEERS = ("naive", "roboplan", "mplib", "sscbirrt")
 STEP = 1.0 / 32.0  # rad, between two checks
 REACH = 1.0  # rad, the longest edge
-TIME_LIMIT = 30.0  # s
+TIME_LIMIT = 120.0  # s
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -20,7 +20,6 @@ from mmplan.shapes import Array
 
 def prepare(arena: Arena, step: float, reach: float, time_limit: float) -> Prepared:
     """The planner for an arena; `step` between checks, `reach` of edges, both rad."""
-    arena.world.geometry  # noqa: B018  built on first use; not the script's own work
     begin = time.process_time()
     naive = _Naive(arena, step, reach, time_limit)
     return Prepared(naive.plan, time.process_time() - begin)
