@@ -145,7 +145,7 @@ def _torque_faults(problem: Problem) -> Iterator[Fault]:
             yield Fault(where, f"{message} still, past its effort limit of {limit:g}")
     if not any(model.inertias[model.getJointId(n)].mass for n in robot.arm.names):
         yield Fault(where, f"the arm of {robot.name} has no masses in its URDF")
-    for name in {task.object for task in problem.tasks}:
+    for name in dict.fromkeys(task.object for task in problem.tasks):
         if problem.object(name).mass is None:
             yield Fault(("objects", name), "missing key 'mass', for planner.torque")
 

@@ -34,7 +34,7 @@ class PathChecker:
         self._moving = moving_part(world)
         if continuous and self._moving is None:
             raise ValueError("this world is checked at single configurations only")
-        self._continuous = continuous
+        self.continuous = continuous
         self.resolution = resolution
         self.sweep = sweep_of(world)
         self.states = 0
@@ -55,7 +55,7 @@ class PathChecker:
         """Whether an edge is free of collision, its first end taken as checked."""
         dq = q_to - q_from
         self.edges += 1
-        if self._moving is not None and self._continuous:
+        if self._moving is not None and self.continuous:
             if self._moving is not self.world and not self._steps_free(q_from, dq):
                 return False
             return not self._moving.motion_collides(q_from, dq)

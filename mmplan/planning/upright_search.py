@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 
@@ -86,8 +87,12 @@ class UprightSearch:
         self.metric = Metric.of_joints(joints, checker.sweep.weights)
 
     def run(self, q_start: Array, q_goals: Array, settings: PlannerSettings) -> Search:
-        """Search a path from q_start (nq,) to any of q_goals (g, nq)."""
-        deadline = time.monotonic() + settings.time_limit
+        """Search a path from q_start (nq,) to any of q_goals (g, nq).
+
+        The time limit is one of CPU time: another path, or none, for the machine being
+        busy would be a plan that cannot be repeated.
+        """
+        deadline = time.thread_time() + settings.time_limit
         trees = Tree(q_start[None]), Tree(q_goals)
         samples = self._samples(q_start)
         iterations, late, way = 0, False, None
@@ -98,7 +103,7 @@ class UprightSearch:
             if node is not None:
                 meeting = self._grow(other, one.q[node], np.inf, settings.range)
                 way = self._joined(trees, one, node, meeting)
-            late = time.monotonic() > deadline
+            late = time.thread_time() > deadline
         q = trees[0].q
         gap = self.metric.distances(q[None], q_goals[:, None]).min()
         return Search(way, iterations, late, float(gap), trees[0].size, trees[1].size)
@@ -169,7 +174,12 @@ class UprightSearch:
         good = len(q) if sound.all() else int(np.argmin(sound))
         path = np.vstack([q_from, q[:good]])
         blocked = self._checker.first_blocked_edge(path) if good else None
-        return path[1:] if blocked is None else path[1 : blocked[0] + 1]
+        if blocked is not None:
+            path = path[: blocked[0] + 1]
+        if self._checker.continuous:
+            free = [self._checker.edge_free(*edge) for edge in pairwise(path)]
+            path = path[: free.index(False) + 1] if False in free else path
+        return path[1:]
 
     def _samples(self, q_still: Array) -> Iterator[Array]:
         """Random configurations (nq,): a half upright, a half in exempt regions.
