@@ -67,6 +67,7 @@ def robot_in_scene(urdf_file: str, scene_file: str) -> mujoco.MjModel:
             geom.contype, geom.conaffinity = 2, 3
     scene = mujoco.MjSpec.from_file(scene_file)
     robot.compiler.boundmass = robot.compiler.boundinertia = 1e-6
+    robot.compiler.balanceinertia = True  # nothing here depends on inertia
     scene.attach(robot, frame=scene.worldbody.add_frame(), prefix="robot:")
     return scene.compile()
 
