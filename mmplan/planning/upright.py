@@ -55,7 +55,7 @@ class UprightRule:
         self.robot = robot
         self.name = name
         self.upright = upright
-        self._T_joint_object = robot.T_joint_tool @ T_tool_object
+        self.T_joint_object: Array = robot.T_joint_tool @ T_tool_object
         self._T_object_tool = np.linalg.inv(T_tool_object)
         self._kinematics = ForwardKinematics(robot.model)
         turn = min(TURN_PER_METRE * resolution, SHARE_OF_ANGLE * upright.angle)
@@ -69,7 +69,7 @@ class UprightRule:
     @property
     def origin(self) -> Array:
         """The origin (3,) of the object's frame in the frame of the tool's joint."""
-        origin: Array = self._T_joint_object[:3, 3]
+        origin: Array = self.T_joint_object[:3, 3]
         return origin
 
     def excess(self, q: Array) -> Array:
@@ -162,7 +162,7 @@ class UprightRule:
         return np.where(depths >= self._inset, -np.inf, tilts - self._limit)
 
     def _object_poses(self, T_world_joint: Array) -> Array:
-        poses: Array = T_world_joint[:, self.robot.tool_joint] @ self._T_joint_object
+        poses: Array = T_world_joint[:, self.robot.tool_joint] @ self.T_joint_object
         return poses
 
 
