@@ -27,7 +27,7 @@ _MOST_ROUNDS = 12
 # How many candidates are tried for each grasp that is wanted, each round.
 _TRIES = 2.0
 # A new number for each change of the sampling: what caches hold is then made anew.
-_METHOD = 3
+_METHOD = 4
 # The thinnest thing between the fingers that is not noise of the mesh, m.
 _THINNEST = 1e-3
 # Rays begin this far inside the surface, as a share of the hand's opening.
@@ -73,18 +73,22 @@ def antipodal_poses(
         surface = _surface(mesh, vertices, triangles)
         hand = hand_size(robot)
         rng = np.random.default_rng(seed)
-        found = [np.empty((0, 4, 4))]
+        found = np.empty((0, 4, 4))
+        n = tried = int(_TRIES * samples) + 1
         for _ in range(_MOST_ROUNDS):
-            pairs = antipodal_pairs(
-                surface, hand, friction, int(_TRIES * samples) + 1, rng
-            )
+            pairs = antipodal_pairs(surface, hand, friction, n, rng)
             T = _poses(pairs, hand, rng)
             apart = pairs.second - pairs.first
             widths = np.einsum("ni,ni->n", apart, pairs.closing)
-            found.append(T[room.is_free(model, T, widths)])
-            if sum(map(len, found)) >= samples:
+            found = np.concatenate([found, T[room.is_free(model, T, widths)]])
+            missing = samples - len(found)
+            if missing <= 0:
                 break
-        return [np.concatenate(found)[:samples]]
+            # As many more as should do, by those so far, and some.
+            enough = 2 * missing * tried // max(1, len(found))
+            n = min(int(_TRIES * samples), enough) + 1
+            tried += n
+        return [found[:samples]]
 
     (poses,) = cached("grasps", key.hexdigest(), sample)
     return poses
