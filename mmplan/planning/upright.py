@@ -60,11 +60,12 @@ class UprightRule:
         self._kinematics = ForwardKinematics(robot.model)
         turn = min(TURN_PER_METRE * resolution, SHARE_OF_ANGLE * upright.angle)
         self.turn_per_metre = turn / resolution
-        tilts, depths = self._tilts_and_depths(np.array(ends))
-        exempt = depths >= 0.0
-        worst = float(tilts[~exempt].max(initial=0.0))
+        T = self._object_poses(self._kinematics(np.array(ends)))
+        tilts, depths = upright.tilts(T[:, :3, :3]), upright.depths(T[:, :3, 3])
+        worst = float(tilts[depths < 0.0].max(initial=0.0))
         self._limit = float(np.clip(worst, upright.angle - turn / 2.0, upright.angle))
-        self._inset = float(min(resolution / 2.0, depths[exempt].min(initial=np.inf)))
+        inside = depths[(depths >= 0.0) & (tilts > self._limit)]
+        self._inset = float(min(resolution / 2.0, inside.min(initial=np.inf)))
 
     @property
     def origin(self) -> Array:
@@ -74,8 +75,7 @@ class UprightRule:
 
     def excess(self, q: Array) -> Array:
         """How much too large the tilt is at q (n, nq), (n,), rad; -inf if exempt."""
-        tilts, depths = self._tilts_and_depths(q)
-        return np.where(depths >= self._inset, -np.inf, tilts - self._limit)
+        return self._excess(self._object_poses(self._kinematics(q)))
 
     def told(self, q: Array) -> str | None:
         """How the rule is broken at one configuration (nq,), None if it is not."""
@@ -151,10 +151,6 @@ class UprightRule:
         about[sine < 1e-9] = (1.0, 0.0, 0.0)
         about /= np.linalg.norm(about, axis=1, keepdims=True)
         return np.arctan2(sine, z) - AIM * self._limit, about
-
-    def _tilts_and_depths(self, q: Array) -> tuple[Array, Array]:
-        T = self._object_poses(self._kinematics(q))
-        return self.upright.tilts(T[:, :3, :3]), self.upright.depths(T[:, :3, 3])
 
     def _excess(self, T_world_object: Array) -> Array:
         tilts = self.upright.tilts(T_world_object[:, :3, :3])
