@@ -127,6 +127,10 @@ class PlannerSection(Section):
     """How much more a way of the base counts than the same way of the arm."""
     torque: bool = PlannerSettings.torque
     """Whether motions keep the effort limits of the arm, with what it carries."""
+    range: Positive = PlannerSettings.range
+    """Longest edge of the planner's trees, weighted by the joints' lever arms, m."""
+    motion_check: MotionCheck = PlannerSettings.motion_check
+    """sampled: at the resolution alone; continuous: between two checks as well."""
 
     def settings(self) -> PlannerSettings:
         """The problem's value."""
