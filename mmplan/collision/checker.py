@@ -62,11 +62,9 @@ class Checker:
             margin,
         )
         made = clear_cells_made(robot)
-        for pair, ends in enumerate(
-            map(tuple, assembly.pairs.tolist() if made else ())
-        ):
-            if ends in made:
-                self._broadphase.learn(pair, made[ends])
+        for pair, (i, j) in enumerate(assembly.pairs.tolist() if made else ()):
+            if (i, j) in made:
+                self._broadphase.learn(pair, made[i, j])
         # How often each pair of the robot's own bodies was apart; others never count.
         own = (assembly.pairs < robot.geometry.ngeoms).all(axis=1)
         self._apart = np.where(own, 0, np.iinfo(np.int64).min).tolist()
@@ -91,6 +89,8 @@ class Checker:
 
     def any_collision(self, q: Array) -> bool:
         """Whether any of the configurations (n, nq) is in collision."""
+        if len(q) == 1:
+            return self.steps_collide(q[0], np.zeros_like(q[0]), 1)
         placed = -1
         for row, pair in self._broadphase.likeliest(q):
             if row != placed:

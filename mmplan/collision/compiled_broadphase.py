@@ -168,7 +168,11 @@ class CompiledBroadphase:
 
 def _deepest_first(found: Indices, depth: Array) -> list[list[int]]:
     """Finds (k, 3) as lists, those whose boxes overlap the most first."""
-    return (found[depth.argsort()[::-1]] if len(found) > 1 else found).tolist()
+    if not len(depth):
+        return []
+    order = depth.argsort()[::-1]
+    finds: list[list[int]] = found[order].tolist()
+    return finds
 
 
 def _boxes(geometry: pin.GeometryModel, indices: list[int], padding: float) -> Array:

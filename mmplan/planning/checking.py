@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 import numpy as np
@@ -11,6 +12,9 @@ from mmplan.collision import coarse_to_fine
 from mmplan.planning.sweep import sweep_of
 from mmplan.planning.world import PlanningWorld, moving_part
 from mmplan.shapes import Array
+
+# How many times longer steps are where continuous checks have the last word.
+COARSER = 4.0
 
 
 class PathChecker:
@@ -40,6 +44,10 @@ class PathChecker:
         self.states = 0
         self.edges = 0
 
+    def coarser(self) -> PathChecker:
+        """One that is quick, for paths that are going to be proven afterwards."""
+        return PathChecker(self.world, COARSER * self.resolution)
+
     def states_free(self, q: Array) -> bool:
         """Whether all of the configurations (n, nq) are free of collision."""
         self.states += len(q)
@@ -63,7 +71,7 @@ class PathChecker:
 
     def _steps_free(self, q: Array, dq: Array) -> bool:
         """Whether all steps from q (nq,) to q + dq are free."""
-        steps = int(self.steps(dq))
+        steps = max(1, math.ceil(self.sweep.farthest(dq) / self.resolution))
         if self._moving is not None and self._moving is self.world:
             self.states += steps
             return not self._moving.steps_collide(q, dq, steps)

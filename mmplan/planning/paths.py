@@ -77,6 +77,10 @@ def plan_path(
     Goals in collision or out of limits are left out. Where a goal can be reached in a
     straight line, that is the path. The same generator state gives the same path.
 
+    Where motions are to be checked continuously, the planner first looks at coarse
+    steps; only if the path that it finds then collides between these, it searches again
+    with every edge checked continuously.
+
     Raises:
         InputError: if there is no planner of that name, or it cannot plan for joints
             that wrap.
@@ -100,11 +104,11 @@ def plan_path(
     seed = int(rng.integers(1, 2**31))
     if straight is not None:
         return _success(checker, metric, straight, q_goals)
-    found = _search(checker, q_start, q_goals[usable], joints, settings, seed)
-    if found.waypoints is None:
+    found, waypoints = _proven(
+        checker, q_start, q_goals[usable], joints, settings, seed
+    )
+    if waypoints is None:
         return _exhausted(checker, found, settings)
-    waypoints = np.vstack([q_start, found.waypoints[1:]])
-    waypoints = _with_exact_end(metric.unwrapped(waypoints), metric, q_goals[usable])
     begin = time.process_time()
     if isinstance(world, UprightWorld):
         waypoints = thinned(waypoints, checker)
@@ -112,6 +116,30 @@ def plan_path(
     shortening = time.process_time() - begin
     result = _success(checker, metric, path, q_goals, found.iterations)
     return replace(result, first=read_only(waypoints), shortening=shortening)
+
+
+def _proven(
+    checker: PathChecker,
+    q_start: Array,
+    q_goals: Array,
+    joints: MovingJoints,
+    settings: PlannerSettings,
+    seed: int,
+) -> tuple[Search, Array | None]:
+    """A search and the path (n, nq) that it found, free as far as the checker tells."""
+    metric = Metric.of_joints(joints, checker.sweep.weights)
+    for looking in [checker.coarser(), checker] if checker.continuous else [checker]:
+        found = _search(looking, q_start, q_goals, joints, settings, seed)
+        if looking is not checker:
+            checker.states += looking.states
+            checker.edges += looking.edges
+        if found.waypoints is None:
+            return found, None
+        waypoints = metric.unwrapped(np.vstack([q_start, found.waypoints[1:]]))
+        waypoints = _with_exact_end(waypoints, metric, q_goals)
+        if looking is checker or checker.path_free(waypoints):
+            break
+    return found, waypoints
 
 
 def _search(

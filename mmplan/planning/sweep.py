@@ -34,6 +34,10 @@ class Sweep:
         """The longest lever arm of each joint (nq,), which makes distances lengths."""
         return read_only(np.maximum(self.reach.max(axis=0, initial=0.0), MIN_WEIGHT))
 
+    def farthest(self, dq: Array) -> float:
+        """The same as `distance` for one move (nq,)."""
+        return float((self._every @ np.abs(dq)).max())
+
     def distance(self, dq: Array) -> Array:
         """A bound on the way (m) of any point, (...,), for joint moves (..., nq)."""
         ways: Array = (np.abs(dq) @ self._every.T).max(axis=-1)

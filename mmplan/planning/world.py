@@ -31,6 +31,9 @@ class PlanningWorld(Protocol):
     object among them.
     """
 
+    def __hash__(self) -> int:
+        """Worlds are values, each its own."""
+
     @property
     def model(self) -> pin.Model:
         """The robot's kinematic model, every joint of one degree of freedom."""
