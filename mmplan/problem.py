@@ -6,9 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from mmplan.carry import Carry
-
 if TYPE_CHECKING:
+    from mmplan.carry import Carry
     from mmplan.grasps import GraspFamily
     from mmplan.robot import Robot
     from mmplan.scoring.term import ScoreTerm
@@ -45,6 +44,13 @@ class Object:
     friction: float = 0.5
 
 
+def _no_rules() -> Carry:
+    """Nothing to keep to; imports numpy, which faulty scenes do without."""
+    from mmplan.carry import Carry
+
+    return Carry()
+
+
 @dataclass(frozen=True, eq=False)
 class Task:
     """Move one object to a pose.
@@ -63,7 +69,7 @@ class Task:
     lift: float | None = None
     lower: float | None = None
     retreat: float | None = None
-    carry: Carry = field(default_factory=Carry)
+    carry: Carry = field(default_factory=_no_rules)
 
 
 @dataclass(frozen=True, eq=False)
