@@ -187,10 +187,11 @@ def _path_table(made: list[Made]) -> None:
     print("|---|---|---|---|---|---|---|---|")
     for k, way in enumerate(ways):
         length, radians, duration, elsewhere, *cpu = np.median(rows[timed, k], axis=0)
+        other = "" if np.isnan(elsewhere) else f"{elsewhere:.2f}"
         lost = int(np.isnan(rows[:, k, 2]).sum())
         print(
-            f"| {way} | {radians:.2f} | {length:.2f} | {duration:.2f} | "
-            f"{elsewhere:.2f} | {cpu[0] * 1e3:.0f} | {cpu[1] * 1e3:.0f} | {lost} |"
+            f"| {way} | {radians:.2f} | {length:.2f} | {duration:.2f} | {other} | "
+            f"{cpu[0] * 1e3:.0f} | {cpu[1] * 1e3:.0f} | {lost} |"
         )
 
 
