@@ -19,6 +19,7 @@ from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
 from mmplan.collision.clear_cells import ClearCells
 from mmplan.collision.groups import Groups
 from mmplan.collision.pairs import Flags, Indices, Stretch, Suspects
+from mmplan.collision.requests import PROVABLE
 from mmplan.kinematics import ForwardKinematics
 from mmplan.shapes import Array
 
@@ -112,7 +113,8 @@ class Broadphase:
         way = float(np.max(self._levers @ np.abs(dq), initial=0.0))
         steps = max(1, int(np.ceil(way / (2.0 * _REACH))))
         middles = q + (np.arange(steps)[:, None] + 0.5) / steps * dq
-        found = self._of_poses(self._kinematics(middles), way / (2.0 * steps))
+        reach = way / (2.0 * steps) + PROVABLE
+        found = self._of_poses(self._kinematics(middles), reach)
         return [
             Stretch(pair, row / steps, (row + 1) / steps)
             for rows, pairs in found

@@ -15,7 +15,7 @@ from mmplan.collision.broadphase import Broadphase
 from mmplan.collision.clear_cells import clear_cells, clear_cells_made
 from mmplan.collision.levers import pair_levers
 from mmplan.collision.pairs import Indices, Stretch, Suspects
-from mmplan.collision.requests import TOUCH, make_exact
+from mmplan.collision.requests import PROVABLE, make_exact
 from mmplan.robot import Robot
 from mmplan.shapes import Array
 
@@ -112,7 +112,10 @@ class Checker:
         return False
 
     def motion_collides(self, q: Array, dq: Array) -> bool:
-        """Whether anything collides on the way from q (nq,) to q + dq."""
+        """Whether anything collides on the way from q (nq,) to q + dq.
+
+        Or comes so near, within `PROVABLE`, that a proof would not find an end.
+        """
         if self.any_collision(q + _PLACES * dq):
             return True
         stretches = self._broadphase.on_the_way(q, dq)
@@ -132,7 +135,7 @@ class Checker:
             middle, way = (start + end) / 2.0, float(self._levers[pair] @ span)
             self._place(q + middle * dq)
             found = pin.computeDistance(self._geometry, self._geometry_data, pair)
-            gap = found.min_distance + self._allowed_depth[pair] - TOUCH
+            gap = found.min_distance + self._allowed_depth[pair] - PROVABLE
             if gap <= 0.0:
                 return False
             self._note_apart(pair)

@@ -17,7 +17,7 @@ import pinocchio as pin
 
 from mmplan.collision.levers import pair_levers
 from mmplan.collision.pairs import Flags
-from mmplan.collision.requests import TOUCH, make_exact
+from mmplan.collision.requests import PROVABLE, make_exact
 from mmplan.robot import Robot
 from mmplan.shapes import Array
 
@@ -73,7 +73,7 @@ def _make(robot: Robot, first: int, second: int) -> ClearCells | None:
     distances = _distances(model, geometry, a, b)
     reach = float(lever[joints] @ widths[joints]) / 2.0
     cells = np.array([a, b, lower[a], widths[a], lower[b], widths[b]])
-    return ClearCells(cells, distances > reach + TOUCH)
+    return ClearCells(cells, distances > reach + PROVABLE)
 
 
 def _distances(model: pin.Model, geometry: pin.GeometryModel, a: int, b: int) -> Array:

@@ -16,11 +16,12 @@ from mmplan.collision.assembly import Body
 from mmplan.collision.bounds import local_bounds
 from mmplan.collision.clear_cells import ClearCells
 from mmplan.collision.pairs import Indices, Stretch, Suspects
+from mmplan.collision.requests import PROVABLE
 from mmplan.kinematics import ForwardKinematics
 from mmplan.shapes import Array
 
-# Added to all bounds so that rounding never hides a touch, m.
-_PADDING = 1e-6
+# Added to all bounds so that rounding hides no touch, nor what cannot be proven, m.
+_PADDING = PROVABLE
 # Configurations looked at in one go.
 _CHUNK = 256
 # Boxes apart by less are left to coal, m.

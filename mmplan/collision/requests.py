@@ -15,6 +15,8 @@ from mmplan.shapes import Array
 SCORE_TOLERANCE, PROOF_TOLERANCE = 1e-6, 1e-9
 # Bodies nearer than this touch, m: twice what GJK leaves open in a yes or no.
 TOUCH = 2e-6
+# What passes by at less than this cannot be proven apart by a few bisections, m.
+PROVABLE = 2e-5
 
 
 def make_exact(data: pin.GeometryData, allowed_depth: Array | None = None) -> None:
