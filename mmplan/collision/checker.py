@@ -89,8 +89,6 @@ class Checker:
 
     def any_collision(self, q: Array) -> bool:
         """Whether any of the configurations (n, nq) is in collision."""
-        if len(q) == 1:
-            return self.steps_collide(q[0], np.zeros_like(q[0]), 1)
         placed = -1
         for row, pair in self._broadphase.likeliest(q):
             if row != placed:

@@ -15,7 +15,7 @@ from mmplan.collision import kernels
 from mmplan.collision.assembly import Body
 from mmplan.collision.bounds import local_bounds
 from mmplan.collision.clear_cells import ClearCells
-from mmplan.collision.pairs import Indices, Stretch, Suspects
+from mmplan.collision.pairs import Flags, Indices, Stretch, Suspects
 from mmplan.collision.requests import PROVABLE
 from mmplan.kinematics import ForwardKinematics
 from mmplan.shapes import Array
@@ -61,20 +61,38 @@ class CompiledBroadphase:
         self._found = np.empty((1024, 3), dtype=np.int64)
         self._depth = np.empty(1024)
 
+    @property
+    def _bodies(self) -> tuple[Indices, Array, Array, Indices, Array, Flags]:
+        """Arguments that all kernels share."""
+        return (
+            self._joint,
+            self._moving,
+            self._static,
+            self._pairs,
+            self._cells,
+            self._clear,
+        )
+
+    @property
+    def _room(self) -> tuple[Indices, Array]:
+        return self._found, self._depth
+
     def suspects(self, q: Array) -> Iterator[Suspects]:
         """The pairs that may touch at configurations q (n, nq), in batches by row."""
         q = np.ascontiguousarray(q)
         for start in range(0, len(q), _CHUNK):
-            chunk = q[start : start + _CHUNK]
-            T = kernels.joint_poses(chunk, self._tree, self._basis)
-            found, _ = self._find(chunk, T)
+            found, _ = self._find(q[start : start + _CHUNK])
             yield Suspects(found[:, 0] + start, found[:, 1])
 
     def suspects_at(self, T_world_joint: Array) -> Iterator[Suspects]:
         """The same, from poses (n, njoints, 4, 4) of all joints."""
         unknown = np.empty((len(T_world_joint), 0))
-        found, _ = self._find(unknown, np.ascontiguousarray(T_world_joint))
-        yield Suspects(found[:, 0], found[:, 1])
+        T = np.ascontiguousarray(T_world_joint)
+        while True:
+            count = kernels.find_suspects(unknown, T, *self._bodies, *self._room)
+            if self._had_room(count):
+                break
+        yield Suspects(*self._found[:count, :2].T.copy())
 
     def likeliest(self, q: Array) -> Iterator[tuple[int, int]]:
         """Configuration and pair of each that may touch, likely ones first.
@@ -83,9 +101,7 @@ class CompiledBroadphase:
         """
         q = np.ascontiguousarray(q)
         for start in range(0, len(q), _CHUNK):
-            chunk = q[start : start + _CHUNK]
-            T = kernels.joint_poses(chunk, self._tree, self._basis)
-            found, depth = self._find(chunk, T)
+            found, depth = self._find(q[start : start + _CHUNK])
             for row, pair, _ in _deepest_first(found, depth):
                 yield row + start, pair
 
@@ -116,20 +132,11 @@ class CompiledBroadphase:
         self._clear = np.concatenate([clear, known.clear[None]])
         self._pairs[self._pairs[:, 0] == pair, 3] = count
 
-    def _find(self, q: Array, T_world_joint: Array) -> tuple[Indices, Array]:
+    def _find(self, q: Array) -> tuple[Indices, Array]:
         """Row, pair and nothing (k, 3), and overlaps (k,), by row."""
         while True:
-            count = kernels.find_suspects(
-                q,
-                T_world_joint,
-                self._joint,
-                self._moving,
-                self._static,
-                self._pairs,
-                self._cells,
-                self._clear,
-                self._found,
-                self._depth,
+            count = kernels.find_suspects_of(
+                q, self._tree, self._basis, *self._bodies, *self._room
             )
             if self._had_room(count):
                 return self._found[:count].copy(), self._depth[:count]
@@ -144,16 +151,10 @@ class CompiledBroadphase:
                 _SMALLEST,
                 self._tree,
                 self._basis,
-                self._joint,
-                self._moving,
-                self._static,
-                self._pairs,
                 self._levers,
-                self._cells,
-                self._clear,
                 self._lists,
-                self._found,
-                self._depth,
+                *self._bodies,
+                *self._room,
             )
             if self._had_room(count):
                 return self._found[:count], self._depth[:count]

@@ -32,6 +32,8 @@ STATIC, MOVING = -2, -1
 # Added to the cosines between axes, so that nearly parallel ones separate nothing that
 # touches.
 _ROUNDING = 1e-12
+# Where bodies can come nearer by more than this, m, boxes are not compared with boxes.
+_COARSE = 0.1
 # Into how many parts a motion can be cut, and how often it is halved at most.
 PARTS = 1 << 30
 HALVINGS = 16
@@ -88,6 +90,25 @@ def find_suspects(
 
 
 @njit(cache=True)
+def find_suspects_of(
+    q: Array,
+    tree: Indices,
+    basis: Array,
+    joint: Indices,
+    moving: Array,
+    static: Array,
+    pairs: Indices,
+    cells: Array,
+    clear: Flags,
+    found: Indices,
+    depth: Array,
+) -> int:
+    """`find_suspects` at configurations q (n, nq)."""
+    T = joint_poses(q, tree, basis)
+    return find_suspects(q, T, joint, moving, static, pairs, cells, clear, found, depth)
+
+
+@njit(cache=True)
 def search_motion(
     q: Array,
     dq: Array,
@@ -95,14 +116,14 @@ def search_motion(
     smallest: float,
     tree: Indices,
     basis: Array,
+    levers: Array,
+    lists: Indices,
     joint: Indices,
     moving: Array,
     static: Array,
     pairs: Indices,
-    levers: Array,
     cells: Array,
     clear: Flags,
-    lists: Indices,
     found: Indices,
     depth: Array,
 ) -> int:
@@ -134,8 +155,19 @@ def search_motion(
     sampled = steps > 0
     parts = steps if sampled else PARTS
     span, here, spread = np.abs(dq), np.empty(len(q)), np.empty(len(q))
-    way = levers @ span
-    lists[: len(pairs)] = np.arange(len(pairs))
+    way, of_mover = np.empty(len(pairs)), np.full(len(joint), -1.0)
+    for e in range(len(pairs)):
+        lists[e] = e
+        i = pairs[e, 1]
+        # All that stands still is the same to a body that moves.
+        if pairs[e, 3] == STATIC and of_mover[i] >= 0.0:
+            way[e] = of_mover[i]
+            continue
+        way[e] = 0.0
+        for k in range(len(q)):
+            way[e] += levers[e, k] * span[k]
+        if pairs[e, 3] == STATIC:
+            of_mover[i] = way[e]
     T = np.zeros((tree.shape[1] + 1, 3, 4))
     T[0, 0, 0] = T[0, 1, 1] = T[0, 2, 2] = 1.0
     boxes, room = np.empty((len(joint), 4, 4)), np.empty((3, 3, 3))
@@ -164,27 +196,43 @@ def search_motion(
             if placed[i] < node:
                 placed[i] = node
                 _place_box(T, joint[i], moving, boxes, i)
+            # Boxes are compared if that can tell more than the ball about one of them.
+            fine = reach <= _COARSE
             if pairs[e, 3] == STATIC:
                 if _is_beyond(static, j, boxes, i, reach):
                     continue
-                overlap = _overlap(static, j, boxes, i, reach, room) - reach
+                overlap = -1.0
+                if fine:
+                    overlap = _overlap(static, j, boxes, i, reach, room) - reach
+                    if overlap < -reach:
+                        continue
+                hit = overlap >= 0.0
+                if (hit and sampled and reach > 0.0) or not (
+                    fine or _is_beyond(static, j, boxes, i, 0.0)
+                ):
+                    overlap = _overlap(static, j, boxes, i, 0.0, room)
+                    hit = overlap >= 0.0
             else:
                 if placed[j] < node:
                     placed[j] = node
                     _place_box(T, joint[j], moving, boxes, j)
                 if _are_far(boxes, i, j, reach):
                     continue
-                overlap = _overlap(boxes, j, boxes, i, reach, room) - reach
-            if overlap < -reach:
-                continue
-            if pairs[e, 3] >= 0 and _are_clear(here, spread, pairs[e, 3], cells, clear):
-                continue
-            hit = overlap >= 0.0
-            if hit and sampled and reach > 0.0:
-                if pairs[e, 3] == STATIC:
-                    hit = _overlap(static, j, boxes, i, 0.0, room) >= 0.0
-                else:
-                    hit = _overlap(boxes, j, boxes, i, 0.0, room) >= 0.0
+                overlap = -1.0
+                if fine:
+                    overlap = _overlap(boxes, j, boxes, i, reach, room) - reach
+                    if overlap < -reach:
+                        continue
+                if pairs[e, 3] >= 0 and _are_clear(
+                    here, spread, pairs[e, 3], cells, clear
+                ):
+                    continue
+                hit = overlap >= 0.0
+                if (hit and sampled and reach > 0.0) or not (
+                    fine or _are_far(boxes, i, j, 0.0)
+                ):
+                    overlap = _overlap(boxes, j, boxes, i, 0.0, room)
+                    hit = overlap >= 0.0
             if hit or (not sampled and (short or reach <= smallest)):
                 if count < len(depth):
                     found[count, 0] = pairs[e, 0]
