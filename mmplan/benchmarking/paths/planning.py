@@ -27,6 +27,9 @@ class OwnPlanner:
         """Prepare the collision checks of an arena."""
         begin = time.process_time()
         arena.world.any_collision(arena.q_start[None])
+        still = np.zeros_like(arena.q_start)
+        arena.world.steps_collide(arena.q_start, still, 1)
+        arena.world.motion_collides(arena.q_start, still)
         seconds = time.process_time() - begin
         return Prepared(lambda seed: _answer(arena, self.settings, seed), seconds)
 
