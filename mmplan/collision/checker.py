@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from importlib.util import find_spec
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -193,12 +193,19 @@ def make_broadphase(
 
     See their constructors.
     """
-    kind: type[Broadphase | CompiledBroadphase] = Broadphase
-    if find_spec("numba") is not None:
-        from mmplan.collision.compiled_broadphase import CompiledBroadphase
-
-        kind = CompiledBroadphase
+    kind = _broadphase_kind()
     return kind(model, geometry, bodies, pairs, levers, margin)
+
+
+@cache
+def _broadphase_kind() -> type[Broadphase | CompiledBroadphase]:
+    try:
+        from mmplan.collision.compiled_broadphase import CompiledBroadphase
+    except (ImportError, RuntimeError):
+        # There is no numba, or none that goes with this numpy, or no folder in which
+        # it could keep what it compiles. All works without, only slower.
+        return Broadphase
+    return CompiledBroadphase
 
 
 def _by_row(

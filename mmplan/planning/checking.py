@@ -14,7 +14,7 @@ from mmplan.planning.world import PlanningWorld, moving_part
 from mmplan.shapes import Array
 
 # How many times longer steps are where continuous checks have the last word.
-COARSER = 4.0
+COARSER = 8.0
 
 
 class PathChecker:
