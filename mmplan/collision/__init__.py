@@ -4,13 +4,12 @@ from mmplan.collision.antipodal import antipodal_poses
 from mmplan.collision.assembly import Assembly, Body, TouchRules
 from mmplan.collision.bisection import coarse_to_fine
 from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
-from mmplan.collision.checker import make_broadphase
 from mmplan.collision.closing import Closings, HandCloser
 from mmplan.collision.distances import LinkDistances
 from mmplan.collision.hand_size import hand_size
 from mmplan.collision.hand_widths import hand_widths
 from mmplan.collision.inertia import inertia_of
-from mmplan.collision.levers import body_corners, joint_levers, pair_levers
+from mmplan.collision.levers import body_corners, joint_levers
 from mmplan.collision.regions import depth_in_region
 from mmplan.collision.requests import make_exact
 from mmplan.collision.scenery import Scenery
@@ -48,11 +47,9 @@ __all__ = [
     "inertia_of",
     "joint_levers",
     "local_bounds",
-    "make_broadphase",
     "make_exact",
     "moved_bounds",
     "overlaps",
-    "pair_levers",
     "solids_of_obstacle",
     "supports",
 ]

@@ -8,6 +8,7 @@ tines of a rack, or the pieces of a glass, one by one only where something is ne
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -16,8 +17,8 @@ import pinocchio as pin
 from mmplan.collision.assembly import Body
 from mmplan.collision.bisection import coarse_to_fine
 from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
-from mmplan.collision.clear_cells import ClearCells
 from mmplan.collision.groups import Groups
+from mmplan.collision.levers import pair_levers
 from mmplan.collision.pairs import Flags, Indices, Stretch, Suspects
 from mmplan.collision.requests import PROVABLE
 from mmplan.kinematics import ForwardKinematics
@@ -52,16 +53,14 @@ class Broadphase:
         geometry: pin.GeometryModel,
         bodies: Sequence[Body],
         pairs: Indices,
-        levers: Array,
         margin: float = 0.0,
     ) -> None:
         """Bound every body; `pairs` (p, 2) are indices into `bodies`.
 
-        `levers` (p, nq) are those of `pair_levers`. Bodies nearer than `margin` (m)
-        count as touching.
+        Bodies nearer than `margin` (m) count as touching.
         """
         self._kinematics = ForwardKinematics(model)
-        self._levers = levers
+        self._model, self._geometry, self._pairs = model, geometry, pairs
         paired = sorted(
             set(pairs.ravel().tolist()), key=lambda i: _group_key(bodies[i])
         )
@@ -79,6 +78,11 @@ class Broadphase:
         watched = self._owners.any_of(self._pair_ids >= 0)
         self._watched = self._links.any_of(watched.T).T  # (links, owners)
         self._self_pairs = _self_pairs(moving, pairs, self._links)
+
+    @cached_property
+    def levers(self) -> Array:
+        """How far joints carry the bodies of each pair to each other, (pairs, nq)."""
+        return pair_levers(self._model, self._geometry, self._pairs)
 
     def suspects(self, q: Array) -> Iterator[Suspects]:
         """The pairs that may touch at configurations q (n, nq), in batches by row."""
@@ -110,7 +114,7 @@ class Broadphase:
 
         Of pairs that are not in the list nothing touches anywhere on the way.
         """
-        way = float(np.max(self._levers @ np.abs(dq), initial=0.0))
+        way = float(np.max(self.levers @ np.abs(dq), initial=0.0))
         steps = max(1, int(np.ceil(way / (2.0 * _REACH))))
         middles = q + (np.arange(steps)[:, None] + 0.5) / steps * dq
         reach = way / (2.0 * steps) + PROVABLE
@@ -120,9 +124,6 @@ class Broadphase:
             for rows, pairs in found
             for row, pair in zip(rows.tolist(), pairs.tolist(), strict=True)
         ]
-
-    def learn(self, pair: int, known: ClearCells) -> None:
-        """Nothing: here looking it up would take longer than coal."""
 
     def _batches(self, q: Array, size: int) -> Iterator[Suspects]:
         start = 0

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from functools import cache
+from collections.abc import Iterator
+from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from mmplan.collision.assembly import Assembly, Body
+from mmplan.collision.assembly import Assembly
 from mmplan.collision.broadphase import Broadphase
 from mmplan.collision.clear_cells import clear_cells, clear_cells_made
-from mmplan.collision.levers import pair_levers
-from mmplan.collision.pairs import Indices, Stretch, Suspects
+from mmplan.collision.pairs import Stretch, Suspects
 from mmplan.collision.requests import PROVABLE, make_exact
 from mmplan.robot import Robot
 from mmplan.shapes import Array
@@ -25,6 +24,8 @@ if TYPE_CHECKING:
 # A pair of the robot's own bodies that was apart so often gets a table, see
 # `clear_cells`.
 _OFTEN = 200
+# So many configurations are looked at one by one.
+_FEW = 8
 # Most motions that collide do so at one of these places.
 _PLACES = np.array([[1.0], [0.5], [0.25], [0.75]])
 # Pairs that come so near to what is allowed that nothing is settled within a stretch
@@ -44,7 +45,6 @@ class Checker:
         self._robot = robot
         self._model = model = robot.model
         self._pairs = assembly.pairs
-        self._levers = pair_levers(model, assembly.geometry, assembly.pairs)
         self._allowed_depth = assembly.allowed_depth.tolist()
         self._geometry = assembly.geometry
         self._data = model.createData()
@@ -53,21 +53,30 @@ class Checker:
         joints = {assembly.bodies[i].joint for i in assembly.pairs.ravel().tolist()}
         self._moving = sorted(joints - {0})
         margin = max(0.0, -float(np.min(assembly.allowed_depth, initial=0.0)))
-        self._broadphase = make_broadphase(
+        self._bounded = (
             model,
             self._geometry,
             assembly.bodies,
             assembly.pairs,
-            self._levers,
             margin,
         )
-        made = clear_cells_made(robot)
-        for pair, (i, j) in enumerate(assembly.pairs.tolist() if made else ()):
-            if (i, j) in made:
-                self._broadphase.learn(pair, made[i, j])
+        self._broadphase = Broadphase(*self._bounded)
         # How often each pair of the robot's own bodies was apart; others never count.
         own = (assembly.pairs < robot.geometry.ngeoms).all(axis=1)
         self._apart = np.where(own, 0, np.iinfo(np.int64).min).tolist()
+
+    @cached_property
+    def _motions(self) -> Broadphase | CompiledBroadphase:
+        """The broadphase for motions: compiled where numba is installed."""
+        compiled = _compiled()
+        if compiled is None:
+            return self._broadphase
+        motions = compiled(*self._bounded)
+        made = clear_cells_made(self._robot)
+        for pair, (i, j) in enumerate(self._pairs.tolist() if made else ()):
+            if (i, j) in made:
+                motions.learn(pair, made[i, j])
+        return motions
 
     def in_collision(self, q: Array) -> npt.NDArray[np.bool_]:
         """Which of the configurations (n, nq) are in collision, (n,)."""
@@ -89,23 +98,26 @@ class Checker:
 
     def any_collision(self, q: Array) -> bool:
         """Whether any of the configurations (n, nq) is in collision."""
+        # Numba takes its time to load: not for single questions.
+        few = len(q) <= _FEW and "_motions" in vars(self)
+        broadphase = self._motions if few else self._broadphase
         placed = -1
-        for row, pair in self._broadphase.likeliest(q):
+        for row, pair in broadphase.likeliest(q):
             if row != placed:
                 self._place(q[row])
                 placed = row
-            if self._collides(pair):
+            if self._touches(pair):
                 return True
         return False
 
     def steps_collide(self, q: Array, dq: Array, steps: int) -> bool:
         """Whether any of q + k / steps · dq (nq,), k = 1, ..., steps, collides."""
         placed = -1
-        for k, pair in self._broadphase.on_steps(q, dq, steps):
+        for k, pair in self._motions.on_steps(q, dq, steps):
             if k != placed:
                 self._place(q + (k / steps) * dq)
                 placed = k
-            if self._collides(pair):
+            if self._touches(pair):
                 return True
         return False
 
@@ -114,9 +126,10 @@ class Checker:
 
         Or comes so near, within `PROVABLE`, that a proof would not find an end.
         """
+        motions = self._motions
         if self.any_collision(q + _PLACES * dq):
             return True
-        stretches = self._broadphase.on_the_way(q, dq)
+        stretches = motions.on_the_way(q, dq)
         return bool(stretches) and not self._stay_apart(q, dq, stretches)
 
     def _stay_apart(self, q: Array, dq: Array, stretches: list[Stretch]) -> bool:
@@ -130,7 +143,7 @@ class Checker:
         todo = stretches[::-1]
         while todo:
             pair, start, end = todo.pop()
-            middle, way = (start + end) / 2.0, float(self._levers[pair] @ span)
+            middle, way = (start + end) / 2.0, float(self._motions.levers[pair] @ span)
             self._place(q + middle * dq)
             found = pin.computeDistance(self._geometry, self._geometry_data, pair)
             gap = found.min_distance + self._allowed_depth[pair] - PROVABLE
@@ -167,7 +180,11 @@ class Checker:
         )
 
     def _collides(self, pair: int) -> bool:
-        hit = bool(pin.computeCollision(self._geometry, self._geometry_data, pair))
+        return bool(pin.computeCollision(self._geometry, self._geometry_data, pair))
+
+    def _touches(self, pair: int) -> bool:
+        """The same, and what is apart is remembered."""
+        hit = self._collides(pair)
         if not hit:
             self._note_apart(pair)
         return hit
@@ -175,36 +192,20 @@ class Checker:
     def _note_apart(self, pair: int) -> None:
         """Look closer at pairs that need to be looked at often and never touch."""
         self._apart[pair] += 1
-        if self._apart[pair] == _OFTEN:
+        if self._apart[pair] == _OFTEN and not isinstance(self._motions, Broadphase):
             known = clear_cells(self._robot, *self._pairs[pair].tolist())
             if known is not None:
-                self._broadphase.learn(pair, known)
-
-
-def make_broadphase(
-    model: pin.Model,
-    geometry: pin.GeometryModel,
-    bodies: Sequence[Body],
-    pairs: Indices,
-    levers: Array,
-    margin: float = 0.0,
-) -> Broadphase | CompiledBroadphase:
-    """The compiled broadphase where numba is installed, else the one in numpy.
-
-    See their constructors.
-    """
-    kind = _broadphase_kind()
-    return kind(model, geometry, bodies, pairs, levers, margin)
+                self._motions.learn(pair, known)
 
 
 @cache
-def _broadphase_kind() -> type[Broadphase | CompiledBroadphase]:
+def _compiled() -> type[CompiledBroadphase] | None:
     try:
         from mmplan.collision.compiled_broadphase import CompiledBroadphase
     except (ImportError, RuntimeError):
         # There is no numba, or none that goes with this numpy, or no folder in which
         # it could keep what it compiles. All works without, only slower.
-        return Broadphase
+        return None
     return CompiledBroadphase
 
 

@@ -1,7 +1,8 @@
 """The broadphase in compiled loops, where numba is installed.
 
-It looks at oriented boxes, one configuration after the other, and so leaves fewer pairs
-to coal than `Broadphase` and takes a fraction of its time; the answers are the same.
+It looks at oriented boxes, one configuration after the other. For one motion at a time
+it takes a fraction of what `Broadphase` does and leaves fewer pairs to coal; large
+batches of configurations are as quick there. The answers are the same.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ from mmplan.collision import kernels
 from mmplan.collision.assembly import Body
 from mmplan.collision.bounds import local_bounds
 from mmplan.collision.clear_cells import ClearCells
-from mmplan.collision.pairs import Flags, Indices, Stretch, Suspects
+from mmplan.collision.levers import pair_levers
+from mmplan.collision.pairs import Flags, Indices, Stretch
 from mmplan.collision.requests import PROVABLE
 from mmplan.kinematics import ForwardKinematics
 from mmplan.shapes import Array
@@ -29,7 +31,7 @@ _SMALLEST = 0.002
 
 
 class CompiledBroadphase:
-    """Finds the pairs of a geometry model whose oriented bounds overlap."""
+    """Finds the pairs of a geometry model whose oriented bounds overlap, on motions."""
 
     def __init__(
         self,
@@ -37,13 +39,11 @@ class CompiledBroadphase:
         geometry: pin.GeometryModel,
         bodies: Sequence[Body],
         pairs: Indices,
-        levers: Array,
         margin: float = 0.0,
     ) -> None:
         """Bound every body; `pairs` (p, 2) are indices into `bodies`.
 
-        `levers` (p, nq) are those of `pair_levers`. Bodies nearer than `margin` (m)
-        count as touching.
+        Bodies nearer than `margin` (m) count as touching.
         """
         kinematics = ForwardKinematics(model)
         self._tree, self._basis = kinematics.tree, kinematics.basis
@@ -53,8 +53,8 @@ class CompiledBroadphase:
         self._joint = np.array([bodies[i].joint for i in moving], dtype=np.int64)
         self._moving = _boxes(geometry, moving, _PADDING + margin)
         self._static = _boxes(geometry, static, _PADDING)
-        self._pairs = _table(moving, static, pairs)
-        self._levers = levers[self._pairs[:, 0]]
+        self._pairs = _table(moving, static, pairs)  # in the order of `pairs`
+        self.levers = pair_levers(model, geometry, pairs)
         self._cells = np.empty((0, 6))
         self._clear = np.empty((0, 1, 1), dtype=np.bool_)
         self._lists = np.empty(len(pairs) * (kernels.HALVINGS + 2), dtype=np.int64)
@@ -76,23 +76,6 @@ class CompiledBroadphase:
     @property
     def _room(self) -> tuple[Indices, Array]:
         return self._found, self._depth
-
-    def suspects(self, q: Array) -> Iterator[Suspects]:
-        """The pairs that may touch at configurations q (n, nq), in batches by row."""
-        q = np.ascontiguousarray(q)
-        for start in range(0, len(q), _CHUNK):
-            found, _ = self._find(q[start : start + _CHUNK])
-            yield Suspects(found[:, 0] + start, found[:, 1])
-
-    def suspects_at(self, T_world_joint: Array) -> Iterator[Suspects]:
-        """The same, from poses (n, njoints, 4, 4) of all joints."""
-        unknown = np.empty((len(T_world_joint), 0))
-        T = np.ascontiguousarray(T_world_joint)
-        while True:
-            count = kernels.find_suspects(unknown, T, *self._bodies, *self._room)
-            if self._had_room(count):
-                break
-        yield Suspects(*self._found[:count, :2].T.copy())
 
     def likeliest(self, q: Array) -> Iterator[tuple[int, int]]:
         """Configuration and pair of each that may touch, likely ones first.
@@ -135,7 +118,7 @@ class CompiledBroadphase:
     def _find(self, q: Array) -> tuple[Indices, Array]:
         """Row, pair and nothing (k, 3), and overlaps (k,), by row."""
         while True:
-            count = kernels.find_suspects_of(
+            count = kernels.find_suspects(
                 q, self._tree, self._basis, *self._bodies, *self._room
             )
             if self._had_room(count):
@@ -151,7 +134,7 @@ class CompiledBroadphase:
                 _SMALLEST,
                 self._tree,
                 self._basis,
-                self._levers,
+                self.levers,
                 self._lists,
                 *self._bodies,
                 *self._room,

@@ -42,7 +42,8 @@ HALVINGS = 16
 @njit(cache=True)
 def find_suspects(
     q: Array,
-    T_world_joint: Array,
+    tree: Indices,
+    basis: Array,
     joint: Indices,
     moving: Array,
     static: Array,
@@ -55,8 +56,7 @@ def find_suspects(
     """Write the pairs whose boxes overlap to `found` and return their number.
 
     Args:
-        q: Configurations (n, nq), or (n, 0) where they are not known.
-        T_world_joint: Poses of all joints at these, (n, joints + 1, 3 or 4, 4).
+        q: Configurations (n, nq).
         found: Row and pair's number of each find, by row, (c, 2); those beyond c are
             counted only.
         depth: By how much the boxes overlap, (c,), m.
@@ -64,8 +64,10 @@ def find_suspects(
     count = 0
     boxes, room = np.empty((len(joint), 4, 4)), np.empty((3, 3, 3))
     still = np.zeros(q.shape[1])
-    for row in range(len(T_world_joint)):
-        T = T_world_joint[row]
+    T = np.zeros((tree.shape[1] + 1, 3, 4))
+    T[0, 0, 0] = T[0, 1, 1] = T[0, 2, 2] = 1.0
+    for row in range(len(q)):
+        _place_joints(q[row], tree, basis, T)
         for mover in range(len(joint)):
             _place_box(T, joint[mover], moving, boxes, mover)
         for e in range(len(pairs)):
@@ -87,25 +89,6 @@ def find_suspects(
                 depth[count] = overlap
             count += 1
     return count
-
-
-@njit(cache=True)
-def find_suspects_of(
-    q: Array,
-    tree: Indices,
-    basis: Array,
-    joint: Indices,
-    moving: Array,
-    static: Array,
-    pairs: Indices,
-    cells: Array,
-    clear: Flags,
-    found: Indices,
-    depth: Array,
-) -> int:
-    """`find_suspects` at configurations q (n, nq)."""
-    T = joint_poses(q, tree, basis)
-    return find_suspects(q, T, joint, moving, static, pairs, cells, clear, found, depth)
 
 
 @njit(cache=True)
@@ -254,16 +237,6 @@ def search_motion(
             todo[open_] = (first, middle - 1 if sampled else middle, end, kept)
             open_ += 1
     return count
-
-
-@njit(cache=True)
-def joint_poses(q: Array, tree: Indices, basis: Array) -> Array:
-    """Poses of all joints at q (n, nq), (n, joints + 1, 3, 4); joint 0 is the world."""
-    T = np.zeros((len(q), tree.shape[1] + 1, 3, 4))
-    for row in range(len(q)):
-        T[row, 0, 0, 0] = T[row, 0, 1, 1] = T[row, 0, 2, 2] = 1.0
-        _place_joints(q[row], tree, basis, T[row])
-    return T
 
 
 @njit(cache=True)

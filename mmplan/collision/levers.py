@@ -28,7 +28,7 @@ def pair_levers(model: pin.Model, geometry: pin.GeometryModel, pairs: Indices) -
     that carry both bodies do not change their distance.
     """
     bodies = geometry.geometryObjects
-    used = np.unique(pairs).tolist()
+    used = [i for i in np.unique(pairs).tolist() if bodies[i].parentJoint]
     axes = motion_axes(model)
     levers = np.zeros((len(bodies), model.nq))
     carried = np.zeros((len(bodies), model.nq), dtype=np.bool_)

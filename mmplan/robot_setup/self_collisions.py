@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from mmplan.collision import Body, make_broadphase, make_exact, pair_levers
+from mmplan.collision import Body, make_exact
+from mmplan.collision.broadphase import Broadphase
 from mmplan.robot import Robot
 from mmplan.shapes import Array
 
@@ -53,10 +54,7 @@ class SelfCollisions:
         self._geometry_data = self._geometry.createData()
         make_exact(self._geometry_data)
         ends = np.array(between, dtype=np.int64).reshape(-1, 2)
-        levers = pair_levers(self._model, self._geometry, ends)
-        self._broadphase = make_broadphase(
-            self._model, self._geometry, bodies, ends, levers
-        )
+        self._broadphase = Broadphase(self._model, self._geometry, bodies, ends)
 
     def overlaps(self, q: Array, asked: Mask | None = None) -> Mask:
         """Which pairs overlap at configurations q (n, nq): (n, pairs).

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from mmplan.collision import CollisionWorld
-from mmplan.collision.broadphase import Broadphase
 from mmplan.collision.checker import Checker
 from mmplan.collision.clear_cells import clear_cells
 from mmplan.collision.compiled_broadphase import CompiledBroadphase
@@ -28,12 +27,8 @@ everywhere = pytest.mark.parametrize(("name", "where"), WORLDS)
 def checkers(name: str, where: str) -> tuple[Checker, Checker]:
     """A checker with the compiled broadphase, and one with that in numpy."""
     compiled, plain = (checker_of(carrying(name, where)) for _ in range(2))
-    world = carrying(name, where)
-    assert isinstance(compiled._broadphase, CompiledBroadphase)
-    margin = max(0.0, -float(world.allowed_depth.min()))
-    plain._broadphase = Broadphase(
-        world.model, world.geometry, world.bodies, world.pairs, plain._levers, margin
-    )
+    assert isinstance(compiled._motions, CompiledBroadphase)
+    vars(plain)["_motions"] = plain._broadphase
     return compiled, plain
 
 
@@ -52,9 +47,9 @@ def edges(seed: int) -> tuple[Array, Array]:
 def test_broadphases_agree_on_configurations(name: str, where: str) -> None:
     compiled, plain = checkers(name, where)
     q = draw(1500, 0)
-    hits = compiled.in_collision(q)
+    hits = plain.in_collision(q)
     assert 0.1 < hits.mean() < 0.9
-    assert np.array_equal(hits, plain.in_collision(q))
+    assert np.array_equal(hits, [compiled.any_collision(row[None]) for row in q])
 
 
 @everywhere
@@ -114,20 +109,20 @@ def test_what_is_known_of_two_links_changes_no_answer() -> None:
     q = np.tile(robot.q_neutral, (800, 1))
     q[:, group.indices] = rng.uniform(group.lower, group.upper, (800, len(group)))
     before, learnt = checker_of(world), checker_of(world)
+    assert before._motions is not learnt._motions  # made before any table is
     tables = 0
     for pair, (i, j) in enumerate(world.pairs.tolist()):
         if max(i, j) < robot.geometry.ngeoms:
             known = clear_cells(robot, i, j)
             if known is not None:
                 assert known.clear.any()
-                learnt._broadphase.learn(pair, known)
+                learnt._motions.learn(pair, known)
                 tables += 1
     assert tables > 0
-    assert np.array_equal(before.in_collision(q), learnt.in_collision(q))
-    suspects = [
-        sum(len(s.row) for s in c._broadphase.suspects(q)) for c in (before, learnt)
-    ]
+    suspects = [len(list(c._motions.likeliest(q))) for c in (before, learnt)]
     assert suspects[1] < suspects[0]
+    hits = before.in_collision(q)
+    assert np.array_equal(hits, [learnt.any_collision(row[None]) for row in q])
     dq = rng.normal(size=q.shape)[:100] * 0.1
     dq[:, group.indices[-1] + 1 :] = 0.0
     for start, way in zip(q, dq, strict=False):
