@@ -1,6 +1,10 @@
 """Compiled loops of the broadphase: boxes against boxes.
 
-Needs numba. A body is known by the oriented box about it, (4, 4): above the box's pose,
+Needs numba. All is in one file, since numba keeps what it compiled as long as the file
+does not change, whatever becomes of others; and functions are long, since counting the
+references to arrays that are handed on takes longer than what is done with them.
+
+A body is known by the oriented box about it, (4, 4): above the box's pose,
 in the last row its half extents and the radius of the ball about it. Boxes are apart if
 one of the 15 axes of Gottschalk, Lin and Manocha ("OBBTree", SIGGRAPH 1996) separates
 them.
