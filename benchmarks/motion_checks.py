@@ -65,7 +65,9 @@ def row(name: str, count: int, digest: hashlib._Hash) -> str:
     arm, base = robot.arm.indices, robot.base.indices
     low[:, arm] = np.maximum(robot.arm.lower, -np.pi)
     high[:, arm] = np.minimum(robot.arm.upper, np.pi)
-    low[:, base], high[:, base] = problem.base_bounds.T
+    bounds = problem.base_bounds
+    low[:, base] = np.where(np.isfinite(bounds[:, 0]), bounds[:, 0], -np.pi)
+    high[:, base] = np.where(np.isfinite(bounds[:, 1]), bounds[:, 1], np.pi)
     q = rng.uniform(low, high)
     q = q[~world.in_collision(q)][:count]
     dq = rng.normal(size=q.shape)
