@@ -15,7 +15,8 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from mmplan.benchmarking.paths.arena import Arena
-from mmplan.collision.surfaces import TriangleMesh, appearance
+from mmplan.collision.mesh_files import TriangleMesh
+from mmplan.collision.surfaces import appearance
 from mmplan.files import urdf_edit as edit
 from mmplan.files.rigid_pose import RigidPose
 from mmplan.files.urdf_composition import held

@@ -9,10 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from mmplan.array_cache import cached
-from mmplan.collision.decomposition import Triangles
 from mmplan.collision.hand_room import HandRoom
 from mmplan.collision.hand_size import hand_size
-from mmplan.collision.meshes import read_mesh, read_triangles
+from mmplan.collision.mesh_files import (
+    TriangleMesh,
+    content_key,
+    read_surface,
+    surface_tree,
+)
 from mmplan.exceptions import InputError
 from mmplan.grasps.family import poses_from
 from mmplan.grasps.hand import HandSize
@@ -63,14 +67,14 @@ def antipodal_poses(
     Raises:
         InputError: The mesh cannot be read, or the extra `meshes` is not installed.
     """
-    model = read_mesh(mesh)
-    vertices, triangles = read_triangles(model)
     room = HandRoom(robot)
-    key = hashlib.sha256(vertices.tobytes() + triangles.tobytes() + room.signature())
-    key.update(repr((_METHOD, friction, samples, seed, _TRIES)).encode())
+    hand_key = hashlib.sha256(room.signature()).hexdigest()
+    settings = (_METHOD, friction, samples, seed, _TRIES)
 
     def sample() -> list[Array]:
-        surface = _surface(mesh, vertices, triangles)
+        triangles = read_surface(mesh)
+        surface = _surface(mesh, triangles)
+        tree = surface_tree(triangles)
         hand = hand_size(robot)
         rng = np.random.default_rng(seed)
         found = np.empty((0, 4, 4))
@@ -80,7 +84,7 @@ def antipodal_poses(
             T = _poses(pairs, hand, rng)
             apart = pairs.second - pairs.first
             widths = np.einsum("ni,ni->n", apart, pairs.closing)
-            found = np.concatenate([found, T[room.is_free(model, T, widths)]])
+            found = np.concatenate([found, T[room.is_free(tree, T, widths)]])
             missing = samples - len(found)
             if missing <= 0:
                 break
@@ -90,7 +94,7 @@ def antipodal_poses(
             tried += n
         return [found[:samples]]
 
-    (poses,) = cached("grasps", key.hexdigest(), sample)
+    (poses,) = cached("grasps", content_key(mesh, hand_key, *settings), sample)
     return poses
 
 
@@ -121,7 +125,7 @@ def antipodal_pairs(
     return Pairs(first[ray[rows]], hits[rows], closing)
 
 
-def _surface(mesh: Mesh, vertices: Array, triangles: Triangles) -> trimesh.Trimesh:
+def _surface(mesh: Mesh, triangles: TriangleMesh) -> trimesh.Trimesh:
     try:
         import trimesh
     except ImportError as error:
@@ -129,7 +133,7 @@ def _surface(mesh: Mesh, vertices: Array, triangles: Triangles) -> trimesh.Trime
             f"{mesh.path}: grasps of a mesh are sampled with an extra: "
             "pip install 'mmplan[meshes]'; or give the object 'grasps'"
         ) from error
-    return trimesh.Trimesh(vertices, triangles, process=False)
+    return trimesh.Trimesh(*triangles, process=False)
 
 
 def _points_by_area(

@@ -2,73 +2,54 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import coal
 import numpy as np
 
-from mmplan.collision.decomposition import Effort, Triangles, decomposed
+from mmplan.array_cache import cached
+from mmplan.collision.decomposition import Effort, cut
+from mmplan.collision.enclosing import enclosing
+from mmplan.collision.mesh_files import TriangleMesh, content_key, read_surface
 from mmplan.exceptions import InputError
 from mmplan.shapes import Array, Mesh
 
 # A mesh whose hull is at most this much larger than itself is taken as convex.
 _CONVEX_VOLUME_RATIO = 1.01
-# More triangles take minutes and gain nothing on the convex pieces.
-_MOST_TRIANGLES = 500_000
-# The size in bytes of the head of a binary STL file, which ends with the number of
-# triangles, and of a triangle.
-_STL_HEAD, _STL_TRIANGLE = 84, 50
 # CoACD's own 150 iterations take 10 times as long and gain a few pieces.
 _EFFORT = Effort(concavity=0.02, iterations=20)
+# A new number for each change of the method: what caches hold is then made anew.
+_METHOD = 1
 
 
-def convex_pieces(mesh: Mesh) -> list[Array]:
+def convex_pieces(mesh: Mesh, largest: float = np.inf) -> list[Array]:
     """The corners (m, 3) of convex pieces that together fill the mesh.
 
-    Surfaces that do not hang together are taken one by one. A convex one is one piece.
-    Any other is decomposed by CoACD once and the pieces are kept in the user's cache
-    folder under the hash of the surface. Between pieces there may be cracks of about
-    1e-4 of its size.
+    Surfaces that do not hang together are taken one by one. A convex one is one piece,
+    any other is cut into pieces. Pieces with many corners are replaced by some that
+    enclose them with fewer. The pieces are kept in the user's cache folder under the
+    hash of the file's content and the scale, so that the triangles are read once.
 
     Raises:
-        InputError: The mesh cannot be read, is empty, flat or not closed, or is not
-            convex and the extra `meshes` is not installed.
+        InputError: The mesh cannot be read, is larger than `largest` (m), is empty,
+            flat or not closed, has too many triangles, or is not convex and the extra
+            `meshes` is not installed.
     """
-    pieces: list[Array] = []
-    for vertices, triangles in _parts(*_load(mesh)):
-        hull_volume = hull(vertices).computeVolume()
-        if _volume(vertices, triangles) * _CONVEX_VOLUME_RATIO >= hull_volume:
-            pieces.append(vertices)
-        else:
-            pieces += decomposed(mesh.path, vertices, triangles, _EFFORT)
+
+    def make() -> list[Array]:
+        surface = read_surface(mesh)
+        _check_size(mesh, surface.vertices, largest)
+        if fault := _fault(surface):
+            raise InputError(f"{mesh.path}: this mesh {fault}")
+        parts = _parts(surface)
+        return [enclosing(piece) for part in parts for piece in _pieces(mesh, part)]
+
+    pieces = cached("meshes", content_key(mesh, _EFFORT, _METHOD), make)
+    _check_size(mesh, np.concatenate(pieces), largest)
     return pieces
 
 
-def _parts(vertices: Array, triangles: Triangles) -> list[tuple[Array, Triangles]]:
-    """The surfaces of a mesh that do not hang together.
-
-    A surface that bounds a cavity inside of another stays with all others.
-    """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    _, point = np.unique(vertices, axis=0, return_inverse=True)
-    corners = point.reshape(-1)[triangles]
-    start, end = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
-    n = int(corners.max()) + 1
-    links = coo_array((np.ones(len(start), np.int8), (start, end)), shape=(n, n))
-    count, label = connected_components(links, directed=False)
-    labels = label[corners[:, 0]]
-    parts = []
-    for number in range(count):
-        own = triangles[labels == number]
-        if len(own) == 0:
-            continue
-        used, compact = np.unique(own, return_inverse=True)
-        parts.append((vertices[used], compact.reshape(-1, 3)))
-    if len(parts) == 1 or any(_signed_volume(*part) <= 0.0 for part in parts):
-        return [(vertices, triangles)]
-    return parts
+def hulls(mesh: Mesh, largest: float = np.inf) -> list[coal.CollisionGeometry]:
+    """The convex pieces of a mesh, see `convex_pieces`, for coal."""
+    return [hull(piece) for piece in convex_pieces(mesh, largest)]
 
 
 def hull(points: Array) -> coal.ConvexBase:
@@ -78,14 +59,27 @@ def hull(points: Array) -> coal.ConvexBase:
     return coal.Convex.convexHull(corners, True, "Qt")
 
 
-def check_size(mesh: Mesh, largest: float) -> None:
-    """Refuse a mesh that is larger (m) than such a thing can be.
+def _pieces(mesh: Mesh, part: TriangleMesh) -> list[Array]:
+    """The corners of the pieces of a surface that hangs together."""
+    corners, volume = _hull(part.vertices)
+    if abs(_signed_volume(part)) * _CONVEX_VOLUME_RATIO >= volume:
+        return [corners]
+    return [_hull(piece)[0] for piece in cut(mesh.path, part, _EFFORT)]
 
-    Raises:
-        InputError: It is, or the file has too many triangles or cannot be read.
+
+def _hull(points: Array) -> tuple[Array, float]:
+    """The corners (m, 3) and the volume of the hull of points (n, 3).
+
+    To about 1e-9 of its size: where many points are in one plane, qhull finds an exact
+    hull only in a time that rises as their square.
     """
-    _check_count(mesh, _declared_triangles(mesh.path))
-    vertices = np.array(read_mesh(mesh).vertices())
+    from scipy.spatial import ConvexHull
+
+    found = ConvexHull(points, qhull_options="QJ Pp")
+    return points[np.sort(found.vertices)], float(found.volume)
+
+
+def _check_size(mesh: Mesh, vertices: Array, largest: float) -> None:
     size = np.ptp(vertices, axis=0) if np.isfinite(vertices).all() else np.zeros(3)
     if size.max() > largest:
         extents = " x ".join(f"{extent:.3g}" for extent in size)
@@ -95,75 +89,39 @@ def check_size(mesh: Mesh, largest: float) -> None:
         )
 
 
-def _load(mesh: Mesh) -> tuple[Array, Triangles]:
-    _check_count(mesh, _declared_triangles(mesh.path))
-    surface = read_mesh(mesh)
-    _check_count(mesh, surface.num_tris)
-    vertices, triangles = read_triangles(surface)
-    if fault := _fault(vertices, triangles):
-        raise InputError(f"{mesh.path}: this mesh {fault}")
-    return vertices, triangles
+def _parts(surface: TriangleMesh) -> list[TriangleMesh]:
+    """The surfaces of a mesh that do not hang together.
 
-
-def _check_count(mesh: Mesh, triangles: int) -> None:
-    if triangles > _MOST_TRIANGLES:
-        raise InputError(
-            f"{mesh.path}: this mesh has {triangles:,} triangles, and at most "
-            f"{_MOST_TRIANGLES:,} are taken; simplify it first"
-        )
-
-
-def _declared_triangles(path: Path) -> int:
-    """How many triangles a binary STL file has; 0 where only reading it can tell.
-
-    Reading a million takes the better part of a minute.
+    A surface that bounds a cavity inside of another stays with all others.
     """
-    if path.suffix.lower() != ".stl" or not path.is_file():
-        return 0
-    with path.open("rb") as file:
-        head = file.read(_STL_HEAD)
-    count = int.from_bytes(head[-4:], "little")
-    return count if path.stat().st_size == _STL_HEAD + _STL_TRIANGLE * count else 0
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    vertices, triangles = surface
+    start, end = triangles[:, :2].ravel(), triangles[:, 1:].ravel()
+    n = len(vertices)
+    links = coo_array((np.ones(len(start), np.int8), (start, end)), shape=(n, n))
+    _, label = connected_components(links, directed=False)
+    part_of = label[triangles[:, 0]]
+    order = np.argsort(part_of, kind="stable")
+    ends = np.flatnonzero(np.diff(part_of[order])) + 1
+    parts = []
+    for own in np.split(triangles[order], ends):
+        used, compact = np.unique(own, return_inverse=True)
+        parts.append(TriangleMesh(vertices[used], compact.reshape(-1, 3)))
+    if len(parts) == 1 or any(_signed_volume(part) <= 0.0 for part in parts):
+        return [surface]
+    return parts
 
 
-def read_mesh(mesh: Mesh) -> coal.BVHModelBase:
-    """The surface in a file, closed or not.
-
-    Raises:
-        InputError: The file cannot be read.
-    """
-    try:
-        return coal.MeshLoader().load(str(mesh.path), np.array(mesh.scale))
-    except (RuntimeError, ValueError) as error:
-        raise InputError(
-            f"{mesh.path}: this mesh cannot be read: {_reason(error)}"
-        ) from error
-
-
-def read_triangles(surface: coal.BVHModelBase) -> tuple[Array, Triangles]:
-    """The vertices (n, 3) of a surface and its triangles."""
-    # coal's triangles raise no IndexError past their end, so that list() fails
-    corners = [surface.tri_indices(i) for i in range(surface.num_tris)]
-    triangles = np.array([(c[0], c[1], c[2]) for c in corners], dtype=np.int64)
-    return np.array(surface.vertices()), triangles
-
-
-def _reason(error: Exception) -> str:
-    """Why a file cannot be read, without where in coal's source that was found."""
-    _, _, message = str(error).partition("message: ")
-    name, _, cause = message.partition("\n")
-    if "No meshes remaining" in cause:
-        return "it has no triangles"
-    return cause.partition("\n")[0] or name or str(error)
-
-
-def _fault(vertices: Array, triangles: Triangles) -> str | None:
+def _fault(surface: TriangleMesh) -> str | None:
     """Why the mesh is no solid, None if it is one."""
+    vertices = surface.vertices
     if not np.isfinite(vertices).all():
         return "has a vertex that is not finite"
     if np.linalg.matrix_rank(vertices - vertices.mean(axis=0), tol=1e-9) < 3:
         return "is flat; a closed solid is needed"
-    if not _is_closed(vertices, triangles):
+    if not _is_closed(surface):
         return (
             "is not closed: some edge has a triangle on one side only, or two that do "
             "not face the same way"
@@ -171,24 +129,19 @@ def _fault(vertices: Array, triangles: Triangles) -> str | None:
     return None
 
 
-def _is_closed(vertices: Array, triangles: Triangles) -> bool:
+def _is_closed(surface: TriangleMesh) -> bool:
     """Whether every edge is passed as often one way as the other.
 
     So it is only where the surface has no border and all triangles face the same side.
     """
-    _, point = np.unique(vertices, axis=0, return_inverse=True)
-    a, b, c = point.reshape(-1)[triangles].T
+    a, b, c = surface.triangles.T
     start, end = np.concatenate([a, b, c]), np.concatenate([b, c, a])
-    n = len(vertices)
+    n = len(surface.vertices)
     return np.array_equal(np.sort(start * n + end), np.sort(end * n + start))
 
 
-def _volume(vertices: Array, triangles: Triangles) -> float:
-    """The volume inside a closed mesh."""
-    return abs(_signed_volume(vertices, triangles))
-
-
-def _signed_volume(vertices: Array, triangles: Triangles) -> float:
+def _signed_volume(surface: TriangleMesh) -> float:
     """The volume by the divergence theorem; negative where triangles face inward."""
+    vertices, triangles = surface
     a, b, c = (vertices[triangles[:, i]] for i in range(3))
     return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0

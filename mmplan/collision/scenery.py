@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mmplan.collision.meshes import check_size
+from mmplan.collision.meshes import hulls
 from mmplan.collision.solids import Solid, geometries, solids_of_obstacle
 from mmplan.problem import Object, Problem
 from mmplan.shapes import Array, Mesh
@@ -45,8 +45,10 @@ class Scenery:
             InputError: Its mesh cannot be used.
         """
         if isinstance(item.shape, Mesh):
-            check_size(item.shape, LARGEST_CARRIED)
-        return tuple(Solid(item.name, g, np.eye(4)) for g in geometries(item.shape))
+            solids = hulls(item.shape, LARGEST_CARRIED)
+        else:
+            solids = geometries(item.shape)
+        return tuple(Solid(item.name, solid, np.eye(4)) for solid in solids)
 
     def is_ground(self, owner: str) -> bool:
         """Whether the base drives on this obstacle (or fixture's link)."""

@@ -87,7 +87,7 @@ def _(shape: Revolve) -> list[coal.CollisionGeometry]:
 
 @geometries.register
 def _(shape: Mesh) -> list[coal.CollisionGeometry]:
-    return [meshes.hull(piece) for piece in meshes.convex_pieces(shape)]
+    return meshes.hulls(shape)
 
 
 def _fixture_bodies(

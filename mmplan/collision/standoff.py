@@ -8,8 +8,7 @@ from typing import NamedTuple
 import coal
 import numpy as np
 
-from mmplan.collision.decomposition import Triangles
-from mmplan.collision.meshes import read_triangles
+from mmplan.collision.mesh_files import Triangles, read_triangles
 from mmplan.collision.separation import signed_distance, transform
 from mmplan.collision.solids import Solid
 from mmplan.shapes import Array

@@ -2,22 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import NamedTuple
-
 import coal
 import numpy as np
-import numpy.typing as npt
 
-from mmplan.exceptions import InputError
-from mmplan.shapes import Array, Box, Capsule, Cone, Cylinder, Shape, Sphere
-
-
-class TriangleMesh(NamedTuple):
-    """Triangles, their corners counter-clockwise as seen from outside."""
-
-    vertices: Array  # (n, 3), m
-    triangles: npt.NDArray[np.int64]  # (m, 3), indices into vertices
+from mmplan.collision.mesh_files import TriangleMesh, read_triangles
+from mmplan.shapes import Box, Capsule, Cone, Cylinder, Shape, Sphere
 
 
 def appearance(geometry: coal.CollisionGeometry) -> Shape | TriangleMesh:
@@ -41,28 +30,8 @@ def appearance(geometry: coal.CollisionGeometry) -> Shape | TriangleMesh:
         case coal.ConvexBase():
             return _convex(geometry)
         case coal.BVHModelBase():
-            return _mesh(geometry)
+            return read_triangles(geometry)
     raise TypeError(f"no surface for a geometry of type {type(geometry).__name__}")
-
-
-def mesh_appearance(path: Path, scale: tuple[float, float, float]) -> TriangleMesh:
-    """The triangles in a file, which need not be closed.
-
-    Raises:
-        InputError: The file cannot be read.
-    """
-    try:
-        return _mesh(coal.MeshLoader().load(str(path), np.array(scale)))
-    except (RuntimeError, ValueError) as error:
-        raise InputError(f"{path}: this mesh cannot be read") from error
-
-
-def _mesh(model: coal.BVHModelBase) -> TriangleMesh:
-    corners = [
-        (t[0], t[1], t[2]) for t in map(model.tri_indices, range(model.num_tris))
-    ]
-    triangles = np.array(corners, dtype=np.int64).reshape(-1, 3)
-    return TriangleMesh(np.array(model.vertices()).reshape(-1, 3), triangles)
 
 
 def _convex(convex: coal.ConvexBase) -> TriangleMesh:

@@ -8,7 +8,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from mmplan.atomic_file import write_whole
-from mmplan.collision.surfaces import TriangleMesh
+from mmplan.collision.mesh_files import TriangleMesh
 from mmplan.exports.solids import Body, Thing, objects, obstacles
 from mmplan.plan import Plan
 from mmplan.problem import Problem

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from mmplan.collision import Scenery
+from mmplan.collision.mesh_files import TriangleMesh
 from mmplan.collision.solids import Solid
-from mmplan.collision.surfaces import TriangleMesh, appearance
+from mmplan.collision.surfaces import appearance
 from mmplan.problem import Problem
 from mmplan.shapes import Array, Shape
 

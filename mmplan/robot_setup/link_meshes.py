@@ -8,7 +8,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from mmplan.collision.meshes import read_mesh
+from mmplan.collision.mesh_files import read_mesh
 from mmplan.collision.solids import Solid
 from mmplan.files.located_xml import read_xml
 from mmplan.files.urdf_edit import pose_of

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mmplan.collision.decomposition import Effort, decomposed
-from mmplan.collision.meshes import hull, read_triangles
+from mmplan.collision.mesh_files import read_triangles
+from mmplan.collision.meshes import hull
 from mmplan.collision.solids import Solid
 from mmplan.collision.standoff import Standoff, standoff
 from mmplan.shapes import Array
@@ -70,8 +71,8 @@ def _cut(surface: Solid, limit: float) -> list[Array]:
     corners = _corners(surface)
     if _standoff([corners], [surface]).largest <= limit:
         return [corners]
-    vertices, triangles = read_triangles(surface.geometry)
-    parts = decomposed(Path(surface.owner), vertices, triangles, _EFFORT)
+    triangles = read_triangles(surface.geometry)
+    parts = decomposed(Path(surface.owner), triangles, _EFFORT)
     return [_placed(part, surface) for part in parts]
 
 

@@ -8,12 +8,12 @@ from collections.abc import Iterator
 import numpy as np
 import pinocchio as pin
 
+from mmplan.collision.mesh_files import read_surface
 from mmplan.collision.solids import fixture_configuration, fixture_model
-from mmplan.collision.surfaces import mesh_appearance
 from mmplan.problem import Object, Obstacle
 from mmplan.shapes import Fixture, Mesh, Shape
 from mmplan.visualization.part import WORLD, Colour, Part, merged, object_carrier
-from mmplan.visualization.smoothing import with_edges
+from mmplan.visualization.smoothing import coarsened, with_edges
 from mmplan.visualization.surface import Surface, surface_of
 from mmplan.visualization.urdf_parts import urdf_parts
 
@@ -27,6 +27,8 @@ _OBSTACLES = (
     Colour(0.75, 0.72, 0.69),
     Colour(0.6, 0.62, 0.66),
 )
+# A mesh with more triangles than this is drawn with fewer.
+_MOST_TRIANGLES = 60_000
 _OBJECTS = (
     Colour(0.11, 0.56, 0.6),
     Colour(0.8, 0.42, 0.16),
@@ -62,7 +64,8 @@ def shape_surface(shape: Shape) -> Surface:
         InputError: Its mesh cannot be read.
     """
     if isinstance(shape, Mesh):
-        return with_edges(Surface(*mesh_appearance(shape.path, shape.scale)))
+        surface = Surface(*read_surface(shape))
+        return with_edges(coarsened(surface, _MOST_TRIANGLES))
     return with_edges(surface_of(shape))
 
 

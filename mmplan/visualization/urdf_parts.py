@@ -8,7 +8,8 @@ from functools import lru_cache
 import numpy as np
 import pinocchio as pin
 
-from mmplan.collision.surfaces import TriangleMesh, appearance
+from mmplan.collision.mesh_files import TriangleMesh
+from mmplan.collision.surfaces import appearance
 from mmplan.shapes import Shape
 from mmplan.visualization.part import Colour, Part
 from mmplan.visualization.smoothing import coarsened, with_edges

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmplan.collision.meshes import hull, read_mesh
+from mmplan.collision.mesh_files import read_mesh
+from mmplan.collision.meshes import hull
 from mmplan.collision.solids import Solid
 from mmplan.collision.standoff import standoff
 from mmplan.shapes import Array, Mesh

@@ -11,8 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmplan.collision import solids_of_obstacle
+from mmplan.collision.mesh_files import TriangleMesh, read_surface
 from mmplan.collision.separation import signed_distance, transform
-from mmplan.collision.surfaces import TriangleMesh, appearance, mesh_appearance
+from mmplan.collision.surfaces import appearance
 from mmplan.problem import Obstacle
 from mmplan.shapes import (
     Array,
@@ -169,5 +170,5 @@ def test_meshes_are_read_and_scaled(tmp_path: Path) -> None:
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
     )
     mesh = Mesh(path, (1.0, 2.0, 3.0))
-    surface = Surface(*mesh_appearance(mesh.path, mesh.scale))
+    surface = Surface(*read_surface(mesh))
     assert volume(surface) == pytest.approx(1.0)
