@@ -38,7 +38,9 @@ def main() -> None:
 
     # Only now, since it is here that numba is looked for.
     from mmplan import assets
+    from mmplan.collision import compile_motions
 
+    compile_motions()
     digest = hashlib.sha256()
     print(
         "| scene | pairs | edges | collide | states ≠ steps | only fine steps | "

@@ -5,6 +5,7 @@ from mmplan.collision.assembly import Assembly, Body, TouchRules
 from mmplan.collision.bisection import coarse_to_fine
 from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
 from mmplan.collision.closing import Closings, HandCloser
+from mmplan.collision.compiling import compile_motions
 from mmplan.collision.distances import LinkDistances
 from mmplan.collision.hand_size import hand_size
 from mmplan.collision.hand_widths import hand_widths
@@ -41,6 +42,7 @@ __all__ = [
     "body_corners",
     "clearances",
     "coarse_to_fine",
+    "compile_motions",
     "depth_in_region",
     "hand_size",
     "hand_widths",

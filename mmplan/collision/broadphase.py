@@ -19,7 +19,13 @@ from mmplan.collision.bisection import coarse_to_fine
 from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
 from mmplan.collision.groups import Groups
 from mmplan.collision.levers import pair_levers
-from mmplan.collision.pairs import Flags, Indices, Stretch, Suspects
+from mmplan.collision.pairs import (
+    Flags,
+    Indices,
+    Stretch,
+    Suspects,
+    distance_to_keep,
+)
 from mmplan.collision.requests import PROVABLE
 from mmplan.kinematics import ForwardKinematics
 from mmplan.shapes import Array
@@ -53,12 +59,13 @@ class Broadphase:
         geometry: pin.GeometryModel,
         bodies: Sequence[Body],
         pairs: Indices,
-        margin: float = 0.0,
+        allowed_depth: Array | None = None,
     ) -> None:
         """Bound every body; `pairs` (p, 2) are indices into `bodies`.
 
-        Bodies nearer than `margin` (m) count as touching.
+        Pairs may overlap by `allowed_depth` (p,), m; below 0 it is a distance to keep.
         """
+        margin = distance_to_keep(allowed_depth)
         self._kinematics = ForwardKinematics(model)
         self._model, self._geometry, self._pairs = model, geometry, pairs
         paired = sorted(
@@ -80,7 +87,7 @@ class Broadphase:
         self._self_pairs = _self_pairs(moving, pairs, self._links)
 
     @cached_property
-    def levers(self) -> Array:
+    def _levers(self) -> Array:
         """How far joints carry the bodies of each pair to each other, (pairs, nq)."""
         return pair_levers(self._model, self._geometry, self._pairs)
 
@@ -114,13 +121,14 @@ class Broadphase:
 
         Of pairs that are not in the list nothing touches anywhere on the way.
         """
-        way = float(np.max(self.levers @ np.abs(dq), initial=0.0))
+        ways = self._levers @ np.abs(dq)
+        way = float(np.max(ways, initial=0.0))
         steps = max(1, int(np.ceil(way / (2.0 * _REACH))))
         middles = q + (np.arange(steps)[:, None] + 0.5) / steps * dq
         reach = way / (2.0 * steps) + PROVABLE
         found = self._of_poses(self._kinematics(middles), reach)
         return [
-            Stretch(pair, row / steps, (row + 1) / steps)
+            Stretch(pair, row / steps, (row + 1) / steps, float(ways[pair]))
             for rows, pairs in found
             for row, pair in zip(rows.tolist(), pairs.tolist(), strict=True)
         ]

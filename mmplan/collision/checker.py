@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +12,8 @@ import pinocchio as pin
 from mmplan.collision.assembly import Assembly
 from mmplan.collision.broadphase import Broadphase
 from mmplan.collision.clear_cells import clear_cells, clear_cells_made
-from mmplan.collision.pairs import Stretch, Suspects
+from mmplan.collision.compiling import compiled_broadphase
+from mmplan.collision.pairs import CERTAIN, Stretch, Suspects
 from mmplan.collision.requests import PROVABLE, make_exact
 from mmplan.robot import Robot
 from mmplan.shapes import Array
@@ -52,31 +52,35 @@ class Checker:
         make_exact(self._geometry_data, assembly.allowed_depth)
         joints = {assembly.bodies[i].joint for i in assembly.pairs.ravel().tolist()}
         self._moving = sorted(joints - {0})
-        margin = max(0.0, -float(np.min(assembly.allowed_depth, initial=0.0)))
         self._bounded = (
             model,
             self._geometry,
             assembly.bodies,
             assembly.pairs,
-            margin,
+            assembly.allowed_depth,
         )
         self._broadphase = Broadphase(*self._bounded)
+        self._compiled: CompiledBroadphase | None = None
         # How often each pair of the robot's own bodies was apart; others never count.
         own = (assembly.pairs < robot.geometry.ngeoms).all(axis=1)
         self._apart = np.where(own, 0, np.iinfo(np.int64).min).tolist()
 
-    @cached_property
+    @property
     def _motions(self) -> Broadphase | CompiledBroadphase:
-        """The broadphase for motions: compiled where numba is installed."""
-        compiled = _compiled()
-        if compiled is None:
-            return self._broadphase
-        motions = compiled(*self._bounded)
+        """The broadphase for motions: compiled where that pays."""
+        if self._compiled is None:
+            kind = compiled_broadphase()
+            if kind is None:
+                return self._broadphase
+            self._compiled = kind(*self._bounded)
+            self._learn_what_is_known(self._compiled)
+        return self._compiled
+
+    def _learn_what_is_known(self, motions: CompiledBroadphase) -> None:
         made = clear_cells_made(self._robot)
         for pair, (i, j) in enumerate(self._pairs.tolist() if made else ()):
             if (i, j) in made:
                 motions.learn(pair, made[i, j])
-        return motions
 
     def in_collision(self, q: Array) -> npt.NDArray[np.bool_]:
         """Which of the configurations (n, nq) are in collision, (n,)."""
@@ -98,11 +102,12 @@ class Checker:
 
     def any_collision(self, q: Array) -> bool:
         """Whether any of the configurations (n, nq) is in collision."""
-        # Numba takes its time to load: not for single questions.
-        few = len(q) <= _FEW and "_motions" in vars(self)
+        few = len(q) <= _FEW and self._compiled is not None
         broadphase = self._motions if few else self._broadphase
         placed = -1
         for row, pair in broadphase.likeliest(q):
+            if pair == CERTAIN:
+                return True
             if row != placed:
                 self._place(q[row])
                 placed = row
@@ -114,6 +119,8 @@ class Checker:
         """Whether any of q + k / steps · dq (nq,), k = 1, ..., steps, collides."""
         placed = -1
         for k, pair in self._motions.on_steps(q, dq, steps):
+            if pair == CERTAIN:
+                return True
             if k != placed:
                 self._place(q + (k / steps) * dq)
                 placed = k
@@ -139,24 +146,25 @@ class Checker:
         carried the bodies so far (Schwarzer, Saha, Latombe, 2005); what is not settled
         by that is looked at in turn.
         """
-        span = np.abs(dq)
-        todo = stretches[::-1]
+        todo: list[tuple[int, float, float, float]] = [*stretches[::-1]]
         while todo:
-            pair, start, end = todo.pop()
-            middle, way = (start + end) / 2.0, float(self._motions.levers[pair] @ span)
+            pair, start, end, speed = todo.pop()
+            if pair == CERTAIN:
+                return False
+            middle = (start + end) / 2.0
             self._place(q + middle * dq)
             found = pin.computeDistance(self._geometry, self._geometry_data, pair)
             gap = found.min_distance + self._allowed_depth[pair] - PROVABLE
             if gap <= 0.0:
                 return False
             self._note_apart(pair)
-            free = gap / way if way > 0.0 else 1.0
-            if middle - free <= start:
+            if gap >= (middle - start) * speed:
                 continue
-            if (end - start) * way <= _SMALLEST:
+            if (end - start) * speed <= _SMALLEST:
                 return False
-            todo.append(Stretch(pair, start, middle - free))
-            todo.append(Stretch(pair, middle + free, end))
+            free = gap / speed
+            todo.append((pair, start, middle - free, speed))
+            todo.append((pair, middle + free, end, speed))
         return True
 
     def overlaps(self, q: Array) -> Iterator[tuple[int, float]]:
@@ -192,21 +200,10 @@ class Checker:
     def _note_apart(self, pair: int) -> None:
         """Look closer at pairs that need to be looked at often and never touch."""
         self._apart[pair] += 1
-        if self._apart[pair] == _OFTEN and not isinstance(self._motions, Broadphase):
+        if self._apart[pair] == _OFTEN and self._compiled is not None:
             known = clear_cells(self._robot, *self._pairs[pair].tolist())
             if known is not None:
-                self._motions.learn(pair, known)
-
-
-@cache
-def _compiled() -> type[CompiledBroadphase] | None:
-    try:
-        from mmplan.collision.compiled_broadphase import CompiledBroadphase
-    except (ImportError, RuntimeError):
-        # There is no numba, or none that goes with this numpy, or no folder in which
-        # it could keep what it compiles. All works without, only slower.
-        return None
-    return CompiledBroadphase
+                self._compiled.learn(pair, known)
 
 
 def _by_row(

@@ -8,18 +8,27 @@ batches of configurations are as quick there. The answers are the same.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
+from typing import TypeAlias
 
 import numpy as np
 import pinocchio as pin
 
 from mmplan.collision import kernels
 from mmplan.collision.assembly import Body
-from mmplan.collision.bounds import local_bounds
+from mmplan.collision.bounds import Bounds, local_bounds
 from mmplan.collision.clear_cells import ClearCells
-from mmplan.collision.levers import pair_levers
-from mmplan.collision.pairs import Flags, Indices, Stretch
+from mmplan.collision.cores import BALLS, core_of
+from mmplan.collision.levers import body_levers, pair_levers
+from mmplan.collision.pairs import (
+    CERTAIN,
+    Flags,
+    Indices,
+    Stretch,
+    distance_to_keep,
+)
 from mmplan.collision.requests import PROVABLE
-from mmplan.kinematics import ForwardKinematics
+from mmplan.kinematics import ForwardKinematics, motion_axes
 from mmplan.shapes import Array
 
 # Added to all bounds so that rounding hides no touch, nor what cannot be proven, m.
@@ -28,6 +37,12 @@ _PADDING = PROVABLE
 _CHUNK = 256
 # Boxes apart by less are left to coal, m.
 _SMALLEST = 0.002
+# Overlaps deeper than allowed by this are deep enough not to ask coal, m.
+_SURE = 1e-4
+
+_Bodies: TypeAlias = tuple[
+    Indices, Array, Array, Indices, Array, Flags, Array, Array, Array
+]
 
 
 class CompiledBroadphase:
@@ -39,11 +54,11 @@ class CompiledBroadphase:
         geometry: pin.GeometryModel,
         bodies: Sequence[Body],
         pairs: Indices,
-        margin: float = 0.0,
+        allowed_depth: Array,
     ) -> None:
         """Bound every body; `pairs` (p, 2) are indices into `bodies`.
 
-        Bodies nearer than `margin` (m) count as touching.
+        Pairs may overlap by `allowed_depth` (p,), m; below 0 it is a distance to keep.
         """
         kinematics = ForwardKinematics(model)
         self._tree, self._basis = kinematics.tree, kinematics.basis
@@ -51,18 +66,23 @@ class CompiledBroadphase:
         moving = [i for i in paired if bodies[i].joint != 0]
         static = [i for i in paired if bodies[i].joint == 0]
         self._joint = np.array([bodies[i].joint for i in moving], dtype=np.int64)
-        self._moving = _boxes(geometry, moving, _PADDING + margin)
+        padding = _PADDING + distance_to_keep(allowed_depth)
+        self._moving = _boxes(geometry, moving, padding)
         self._static = _boxes(geometry, static, _PADDING)
+        self._balls, self._cores = _balls(geometry, moving), _cores(geometry, static)
+        self._surely = allowed_depth + _SURE
         self._pairs = _table(moving, static, pairs)  # in the order of `pairs`
-        self.levers = pair_levers(model, geometry, pairs)
+        self._axes = _axes(model)
+        self._own = body_levers(model, geometry, moving)
+        self._levers = pair_levers(model, geometry, pairs)
         self._cells = np.empty((0, 6))
         self._clear = np.empty((0, 1, 1), dtype=np.bool_)
         self._lists = np.empty(len(pairs) * (kernels.HALVINGS + 2), dtype=np.int64)
         self._found = np.empty((1024, 3), dtype=np.int64)
-        self._depth = np.empty(1024)
+        self._depth = np.empty((1024, 2))
 
     @property
-    def _bodies(self) -> tuple[Indices, Array, Array, Indices, Array, Flags]:
+    def _bodies(self) -> _Bodies:
         """Arguments that all kernels share."""
         return (
             self._joint,
@@ -71,6 +91,9 @@ class CompiledBroadphase:
             self._pairs,
             self._cells,
             self._clear,
+            self._balls,
+            self._cores,
+            self._surely,
         )
 
     @property
@@ -80,31 +103,38 @@ class CompiledBroadphase:
     def likeliest(self, q: Array) -> Iterator[tuple[int, int]]:
         """Configuration and pair of each that may touch, likely ones first.
 
-        For whom one hit among the configurations (n, nq) is enough.
+        For whom one hit among the configurations (n, nq) is enough: `CERTAIN` is the
+        only pair where something collides for sure.
         """
-        q = np.ascontiguousarray(q)
-        for start in range(0, len(q), _CHUNK):
-            found, depth = self._find(q[start : start + _CHUNK])
-            for row, pair, _ in _deepest_first(found, depth):
-                yield row + start, pair
+        if len(q) == 1:
+            return iter(self._likeliest(q, 0))
+        starts = range(0, len(q), _CHUNK)
+        return chain.from_iterable(
+            self._likeliest(q[start : start + _CHUNK], start) for start in starts
+        )
 
     def on_steps(self, q: Array, dq: Array, steps: int) -> list[tuple[int, int]]:
         """Step and pair of each that may touch on the way, likely ones first.
 
-        At q + k / steps · dq (nq,), k = 1, ..., steps.
+        At q + k / steps · dq (nq,), k = 1, ..., steps. `CERTAIN` as in `likeliest`.
         """
-        found, depth = self._follow(q, dq, steps)
-        return [(k, pair) for pair, k, _ in _deepest_first(found, depth)]
+        count = self._follow(q, dq, steps)
+        return [(k, pair) for pair, k, _ in self._deepest_first(count)]
 
     def on_the_way(self, q: Array, dq: Array) -> list[Stretch]:
-        """Where pairs may touch on the way from q (nq,) to q + dq, likely ones first.
+        """Where pairs may touch on the way from q (nq,) to q + dq.
 
-        Of pairs that are not in the list nothing touches anywhere on the way.
+        Of pairs that are not in the list nothing touches anywhere on the way. `CERTAIN`
+        as in `likeliest`.
         """
-        found, depth = self._follow(q, dq, 0)
+        count = self._follow(q, dq, 0)
+        if count == CERTAIN:
+            return [Stretch(CERTAIN, 0.0, 1.0, 0.0)]
+        found = self._found[:count].tolist()
+        speeds = self._depth[:count, 1].tolist()
         return [
-            Stretch(pair, first / kernels.PARTS, last / kernels.PARTS)
-            for pair, first, last in _deepest_first(found, depth)
+            Stretch(pair, first / kernels.PARTS, last / kernels.PARTS, speed)
+            for (pair, first, last), speed in zip(found, speeds, strict=True)
         ]
 
     def learn(self, pair: int, known: ClearCells) -> None:
@@ -115,62 +145,93 @@ class CompiledBroadphase:
         self._clear = np.concatenate([clear, known.clear[None]])
         self._pairs[self._pairs[:, 0] == pair, 3] = count
 
-    def _find(self, q: Array) -> tuple[Indices, Array]:
-        """Row, pair and nothing (k, 3), and overlaps (k,), by row."""
-        while True:
-            count = kernels.find_suspects(
-                q, self._tree, self._basis, *self._bodies, *self._room
-            )
-            if self._had_room(count):
-                return self._found[:count].copy(), self._depth[:count]
+    def _likeliest(self, q: Array, first: int) -> list[tuple[int, int]]:
+        """The same as `likeliest` for a few configurations, the first of which is."""
+        count = kernels.find_suspects(
+            q, self._tree, self._basis, *self._bodies, *self._room
+        )
+        if not self._had_room(count):
+            return self._likeliest(q, first)
+        return [(row + first, pair) for row, pair, _ in self._deepest_first(count)]
 
-    def _follow(self, q: Array, dq: Array, steps: int) -> tuple[Indices, Array]:
-        """What `kernels.search_motion` finds (k, 3), and overlaps (k,)."""
-        while True:
-            count = kernels.search_motion(
-                q,
-                dq,
-                steps,
-                _SMALLEST,
-                self._tree,
-                self._basis,
-                self.levers,
-                self._lists,
-                *self._bodies,
-                *self._room,
-            )
-            if self._had_room(count):
-                return self._found[:count], self._depth[:count]
+    def _follow(self, q: Array, dq: Array, steps: int) -> int:
+        """How much `kernels.search_motion` finds and leaves in the room for it."""
+        count = kernels.search_motion(
+            q,
+            dq,
+            steps,
+            _SMALLEST,
+            self._tree,
+            self._basis,
+            self._axes,
+            self._own,
+            self._levers,
+            self._lists,
+            *self._bodies,
+            *self._room,
+        )
+        if not self._had_room(count):
+            return self._follow(q, dq, steps)
+        return count
+
+    def _deepest_first(self, count: int) -> list[list[int]]:
+        """So many finds as lists, those whose boxes overlap the most first."""
+        if count == CERTAIN:
+            return [[CERTAIN] * 3]
+        found = self._found[:count]
+        if count > 1:
+            found = found[self._depth[:count, 0].argsort()[::-1]]
+        finds: list[list[int]] = found.tolist()
+        return finds
 
     def _had_room(self, count: int) -> bool:
         """Whether that many finds fitted in; if not, there is room now."""
         if count <= len(self._depth):
             return True
         self._found = np.empty((2 * count, 3), dtype=np.int64)
-        self._depth = np.empty(2 * count)
+        self._depth = np.empty((2 * count, 2))
         return False
 
 
-def _deepest_first(found: Indices, depth: Array) -> list[list[int]]:
-    """Finds (k, 3) as lists, those whose boxes overlap the most first."""
-    if not len(depth):
-        return []
-    order = depth.argsort()[::-1]
-    finds: list[list[int]] = found[order].tolist()
-    return finds
+def _axes(model: pin.Model) -> Array:
+    """The axis of each joint in its frame, and 1 if it turns, else 0, (joints, 4)."""
+    angular = motion_axes(model)[1:, 3:]
+    return np.column_stack([angular, np.any(angular != 0.0, axis=1)])
 
 
 def _boxes(geometry: pin.GeometryModel, indices: list[int], padding: float) -> Array:
     """Boxes about bodies in the frames of their joints, (m, 4, 4); see `kernels`."""
-    boxes = np.empty((len(indices), 4, 4))
-    for box, index in zip(boxes, indices, strict=True):
-        body = geometry.geometryObjects[index]
-        centre, half = local_bounds(body.geometry)
+    bodies = [geometry.geometryObjects[i] for i in indices]
+    bounds = [local_bounds(body.geometry) for body in bodies]
+    padded = [Bounds(b.centre, b.half + padding) for b in bounds]
+    return _placed(bodies, padded)
+
+
+def _cores(geometry: pin.GeometryModel, indices: list[int]) -> Array:
+    """Boxes within bodies in the frames of their joints, (m, 4, 4)."""
+    bodies = [geometry.geometryObjects[i] for i in indices]
+    return _placed(bodies, [core_of(body.geometry).box for body in bodies])
+
+
+def _placed(bodies: list[pin.GeometryObject], bounds: list[Bounds]) -> Array:
+    """Boxes in the frames of bodies, in those of their joints, (m, 4, 4)."""
+    boxes = np.empty((len(bodies), 4, 4))
+    for box, body, (centre, half) in zip(boxes, bodies, bounds, strict=True):
         box[:3] = body.placement.homogeneous[:3]
         box[:3, 3] += box[:3, :3] @ centre
-        box[3, :3] = half + padding
-        box[3, 3] = np.linalg.norm(box[3, :3])
+        box[3, :3] = half
+        box[3, 3] = np.linalg.norm(half)
     return boxes
+
+
+def _balls(geometry: pin.GeometryModel, indices: list[int]) -> Array:
+    """Balls within bodies, in the frames of the boxes about these, (m, b, 4)."""
+    balls = np.empty((len(indices), BALLS, 4))
+    for row, index in zip(balls, indices, strict=True):
+        body = geometry.geometryObjects[index].geometry
+        row[:] = core_of(body).balls
+        row[:, :3] -= local_bounds(body).centre
+    return balls
 
 
 def _table(moving: list[int], static: list[int], pairs: Indices) -> Indices:

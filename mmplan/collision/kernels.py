@@ -21,6 +21,13 @@ Arguments that several functions share:
         latter is: `STATIC`, or moving too: `MOVING`, or the table of clear cells that
         holds for both, (p, 4).
     cells, clear: Tables of clear cells, (k, 6) and (k, c, c); see `clear_cells`.
+    balls: Centres and radii of balls within the moving bodies, in the frames of their
+        boxes, (m, b, 4).
+    cores: Boxes within the bodies that stand still, in the world, (s, 4, 4).
+    surely: How deep a ball must be in a core for a pair to collide for sure, (p,), m.
+    depth: By how much the boxes of each find overlap, m, and how fast the pair can come
+        nearer to each other from there to the ends of the stretch, m for the whole
+        motion, (c, 2).
 """
 
 from __future__ import annotations
@@ -28,7 +35,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from mmplan.collision.pairs import Flags, Indices
+from mmplan.collision.pairs import CERTAIN, Flags, Indices
 from mmplan.shapes import Array
 
 STATIC, MOVING = -2, -1
@@ -38,6 +45,8 @@ STATIC, MOVING = -2, -1
 _ROUNDING = 1e-12
 # Where bodies can come nearer by more than this, m, boxes are not compared with boxes.
 _COARSE = 0.1
+# Bodies that can come nearer by more than this, m, are not yet handed over.
+_CLOSE = 0.05
 # Into how many parts a motion can be cut, and how often it is halved at most.
 PARTS = 1 << 30
 HALVINGS = 16
@@ -54,33 +63,46 @@ def find_suspects(
     pairs: Indices,
     cells: Array,
     clear: Flags,
+    balls: Array,
+    cores: Array,
+    surely: Array,
     found: Indices,
     depth: Array,
 ) -> int:
     """Write the pairs whose boxes overlap to `found` and return their number.
 
+    Or `CERTAIN`, and what is written is void.
+
     Args:
         q: Configurations (n, nq).
         found: Row and pair's number of each find, by row, (c, 2); those beyond c are
             counted only.
-        depth: By how much the boxes overlap, (c,), m.
     """
     count = 0
     boxes, room = np.empty((len(joint), 4, 4)), np.empty((3, 3, 3))
-    still = np.zeros(q.shape[1])
+    still, placed = np.zeros(q.shape[1]), np.zeros(len(joint), np.int64)
     T = np.zeros((tree.shape[1] + 1, 3, 4))
     T[0, 0, 0] = T[0, 1, 1] = T[0, 2, 2] = 1.0
     for row in range(len(q)):
         _place_joints(q[row], tree, basis, T)
-        for mover in range(len(joint)):
-            _place_box(T, joint[mover], moving, boxes, mover)
         for e in range(len(pairs)):
             i, j = pairs[e, 1], pairs[e, 2]
+            if placed[i] <= row:
+                placed[i] = row + 1
+                _place_box(T, joint[i], moving, boxes, i)
             if pairs[e, 3] == STATIC:
                 if _is_beyond(static, j, boxes, i, 0.0):
                     continue
                 overlap = _overlap(static, j, boxes, i, 0.0, room)
+                if overlap >= 0.0 and _are_one(
+                    boxes, i, balls, cores, j, surely[pairs[e, 0]]
+                ):
+                    _bring_forward(pairs, e)
+                    return CERTAIN
             else:
+                if placed[j] <= row:
+                    placed[j] = row + 1
+                    _place_box(T, joint[j], moving, boxes, j)
                 if _are_far(boxes, i, j, 0.0):
                     continue
                 overlap = _overlap(boxes, j, boxes, i, 0.0, room)
@@ -90,7 +112,7 @@ def find_suspects(
                 continue
             if count < len(depth):
                 found[count, 0], found[count, 1] = row, pairs[e, 0]
-                depth[count] = overlap
+                depth[count, 0] = overlap
             count += 1
     return count
 
@@ -103,6 +125,8 @@ def search_motion(
     smallest: float,
     tree: Indices,
     basis: Array,
+    axes: Array,
+    own: Array,
     levers: Array,
     lists: Indices,
     joint: Indices,
@@ -111,14 +135,20 @@ def search_motion(
     pairs: Indices,
     cells: Array,
     clear: Flags,
+    balls: Array,
+    cores: Array,
+    surely: Array,
     found: Indices,
     depth: Array,
 ) -> int:
     """Write the pairs that may touch on the way from q to q + dq; return their number.
 
+    Or `CERTAIN`, and what is written is void.
+
     The motion is halved again and again. A pair is followed into both halves unless its
     boxes are farther apart than the joints can carry the bodies within the stretch at
-    hand. So most pairs are dropped early, and most stretches never looked at.
+    hand, given how far these are from the joints' axes in the middle of it. So most
+    pairs are dropped early, and most stretches never looked at.
 
     With `steps` above 0 the question is about the configurations q + k / steps · dq,
     k = 1, ..., steps, and stretches are runs of k. With 0 it is about the whole motion,
@@ -130,8 +160,9 @@ def search_motion(
         dq: The way from there, (nq,).
         steps: See above.
         smallest: See above.
-        levers: How far each joint can carry the bodies of a pair towards each other,
-            (p, nq), m/rad or m/m.
+        axes: The axis of each joint in its frame, and 1 if it turns, (joints, 4).
+        own: How far each joint can carry a moving body, (m, nq), m/rad or m/m.
+        levers: How far it can carry the bodies of a pair towards each other, (p, nq).
         lists: Room for the pairs that are followed, (p * (HALVINGS + 2),).
         found: Of each find the pair's number, then the step twice or the first and the
             last of `PARTS` parts of the motion, (c, 3); those beyond c are counted
@@ -142,19 +173,13 @@ def search_motion(
     sampled = steps > 0
     parts = steps if sampled else PARTS
     span, here, spread = np.abs(dq), np.empty(len(q)), np.empty(len(q))
-    way, of_mover = np.empty(len(pairs)), np.full(len(joint), -1.0)
+    far, pace = np.zeros(len(joint)), np.empty(len(joint))
+    arms = np.zeros((len(joint), len(q)))
+    for i in range(len(joint)):
+        for k in range(len(q)):
+            far[i] += own[i, k] * span[k]
     for e in range(len(pairs)):
         lists[e] = e
-        i = pairs[e, 1]
-        # All that stands still is the same to a body that moves.
-        if pairs[e, 3] == STATIC and of_mover[i] >= 0.0:
-            way[e] = of_mover[i]
-            continue
-        way[e] = 0.0
-        for k in range(len(q)):
-            way[e] += levers[e, k] * span[k]
-        if pairs[e, 3] == STATIC:
-            of_mover[i] = way[e]
     T = np.zeros((tree.shape[1] + 1, 3, 4))
     T[0, 0, 0] = T[0, 1, 1] = T[0, 2, 2] = 1.0
     boxes, room = np.empty((len(joint), 4, 4)), np.empty((3, 3, 3))
@@ -178,11 +203,28 @@ def search_motion(
         kept = end
         for place in range(start, end):
             e = lists[place]
-            reach = half * way[e]
             i, j = pairs[e, 1], pairs[e, 2]
             if placed[i] < node:
                 placed[i] = node
                 _place_box(T, joint[i], moving, boxes, i)
+                moved = half * far[i]
+                pace[i] = _reach_out(
+                    T, joint[i], boxes, i, moved, tree, axes, own, span, arms
+                )
+            speed = pace[i]
+            if pairs[e, 3] != STATIC:
+                if placed[j] < node:
+                    placed[j] = node
+                    _place_box(T, joint[j], moving, boxes, j)
+                    moved = half * far[j]
+                    pace[j] = _reach_out(
+                        T, joint[j], boxes, j, moved, tree, axes, own, span, arms
+                    )
+                speed = 0.0
+                for k in range(len(q)):
+                    lever = min(levers[pairs[e, 0], k], arms[i, k] + arms[j, k])
+                    speed += lever * span[k]
+            reach = half * speed
             # Boxes are compared if that can tell more than the ball about one of them.
             fine = reach <= _COARSE
             if pairs[e, 3] == STATIC:
@@ -199,10 +241,10 @@ def search_motion(
                 ):
                     overlap = _overlap(static, j, boxes, i, 0.0, room)
                     hit = overlap >= 0.0
+                if hit and _are_one(boxes, i, balls, cores, j, surely[pairs[e, 0]]):
+                    _bring_forward(pairs, e)
+                    return CERTAIN
             else:
-                if placed[j] < node:
-                    placed[j] = node
-                    _place_box(T, joint[j], moving, boxes, j)
                 if _are_far(boxes, i, j, reach):
                     continue
                 overlap = -1.0
@@ -220,12 +262,14 @@ def search_motion(
                 ):
                     overlap = _overlap(boxes, j, boxes, i, 0.0, room)
                     hit = overlap >= 0.0
-            if hit or (not sampled and (short or reach <= smallest)):
+            if not sampled:
+                hit = short or reach <= smallest or (hit and reach <= _CLOSE)
+            if hit:
                 if count < len(depth):
                     found[count, 0] = pairs[e, 0]
                     found[count, 1] = middle if sampled else first
                     found[count, 2] = middle if sampled else last
-                    depth[count] = overlap
+                    depth[count, 0], depth[count, 1] = overlap, speed
                 count += 1
                 if not sampled:
                     continue
@@ -267,6 +311,44 @@ def _place_box(T: Array, joint: int, moving: Array, boxes: Array, i: int) -> Non
     _compose(T, joint, moving, i, boxes, i)
     for k in range(4):
         boxes[i, 3, k] = moving[i, 3, k]
+
+
+@njit(cache=True)
+def _reach_out(
+    T: Array,
+    joint: int,
+    boxes: Array,
+    i: int,
+    moved: float,
+    tree: Indices,
+    axes: Array,
+    own: Array,
+    span: Array,
+    arms: Array,
+) -> float:
+    """Bound how far joints carry body i, if its points move no farther than `moved`.
+
+    Sets row i of `arms` (m, nq), m/rad or m/m, and returns the sum with `span` (nq,).
+    """
+    total = 0.0
+    while joint > 0:
+        k = joint - 1
+        place = tree[1, k]
+        arm = own[i, place]
+        if axes[k, 3] > 0.0:
+            x = boxes[i, 0, 3] - T[joint, 0, 3]
+            y = boxes[i, 1, 3] - T[joint, 1, 3]
+            z = boxes[i, 2, 3] - T[joint, 2, 3]
+            along = 0.0
+            for axis in range(3):
+                u = T[joint, 0, axis] * x + T[joint, 1, axis] * y
+                along += axes[k, axis] * (u + T[joint, 2, axis] * z)
+            beside = max(0.0, x * x + y * y + z * z - along * along)
+            arm = min(arm, np.sqrt(beside) + boxes[i, 3, 3] + moved)
+        arms[i, place] = arm
+        total += arm * span[place]
+        joint = tree[0, k]
+    return total
 
 
 @njit(cache=True)
@@ -332,6 +414,45 @@ def _are_far(boxes: Array, i: int, j: int, margin: float) -> bool:
     y = boxes[i, 1, 3] - boxes[j, 1, 3]
     z = boxes[i, 2, 3] - boxes[j, 2, 3]
     return x * x + y * y + z * z > radius * radius
+
+
+@njit(cache=True)
+def _bring_forward(pairs: Indices, e: int) -> None:
+    """Let pair e come sooner from now on, since what collides tends to do so again."""
+    for column in range(pairs.shape[1]):
+        earlier = pairs[e // 2, column]
+        pairs[e // 2, column] = pairs[e, column]
+        pairs[e, column] = earlier
+
+
+@njit(cache=True)
+def _are_one(
+    boxes: Array, i: int, balls: Array, cores: Array, j: int, surely: float
+) -> bool:
+    """Whether a ball within moving body i is so deep in the core of another."""
+    for k in range(balls.shape[1]):
+        room = balls[i, k, 3] - surely
+        if room <= 0.0:
+            continue
+        # The way from the core's middle to the ball's, (x, y, z).
+        u, v, w = balls[i, k, 0], balls[i, k, 1], balls[i, k, 2]
+        x = boxes[i, 0, 3] - cores[j, 0, 3]
+        x += boxes[i, 0, 0] * u + boxes[i, 0, 1] * v + boxes[i, 0, 2] * w
+        y = boxes[i, 1, 3] - cores[j, 1, 3]
+        y += boxes[i, 1, 0] * u + boxes[i, 1, 1] * v + boxes[i, 1, 2] * w
+        z = boxes[i, 2, 3] - cores[j, 2, 3]
+        z += boxes[i, 2, 0] * u + boxes[i, 2, 1] * v + boxes[i, 2, 2] * w
+        square = 0.0
+        for axis in range(3):
+            along = (
+                cores[j, 0, axis] * x + cores[j, 1, axis] * y + cores[j, 2, axis] * z
+            )
+            beyond = abs(along) - cores[j, 3, axis]
+            if beyond > 0.0:
+                square += beyond * beyond
+        if square < room * room:
+            return True
+    return False
 
 
 @njit(cache=True)

@@ -7,6 +7,7 @@ Robotics 21(3), 2005.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
@@ -23,24 +24,38 @@ _CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))
 def pair_levers(model: pin.Model, geometry: pin.GeometryModel, pairs: Indices) -> Array:
     """Bounds (p, nq) on how far each joint moves two bodies to each other.
 
-    In m/rad for revolute joints and m/m for prismatic ones, over all configurations
-    within the joint limits; `pairs` (p, 2) are indices into the geometry model. Joints
-    that carry both bodies do not change their distance.
+    Units as in `body_levers`; `pairs` (p, 2) are indices into the geometry model.
+    Joints that carry both bodies do not change their distance.
     """
     bodies = geometry.geometryObjects
-    used = [i for i in np.unique(pairs).tolist() if bodies[i].parentJoint]
-    axes = motion_axes(model)
+    used = np.unique(pairs).tolist()
     levers = np.zeros((len(bodies), model.nq))
+    levers[used] = body_levers(model, geometry, used)
     carried = np.zeros((len(bodies), model.nq), dtype=np.bool_)
     for i in used:
         joint = int(bodies[i].parentJoint)
-        levers[i] = joint_levers(model, axes, joint, body_corners(bodies[i]))
         while joint:
             carried[i, model.joints[joint].idx_q] = True
             joint = int(model.parents[joint])
     first, second = pairs.reshape(-1, 2).T
     either = carried[first] != carried[second]
     return np.where(either, levers[first] + levers[second], 0.0)
+
+
+def body_levers(
+    model: pin.Model, geometry: pin.GeometryModel, bodies: Sequence[int]
+) -> Array:
+    """Bounds (b, nq) on how far each joint moves bodies of a geometry model.
+
+    In m/rad for revolute joints and m/m for prismatic ones, over all configurations
+    within the joint limits.
+    """
+    axes = motion_axes(model)
+    levers = np.zeros((len(bodies), model.nq))
+    for row, i in zip(levers, bodies, strict=True):
+        body = geometry.geometryObjects[i]
+        row[:] = joint_levers(model, axes, int(body.parentJoint), body_corners(body))
+    return levers
 
 
 def body_corners(body: pin.GeometryObject) -> Array:

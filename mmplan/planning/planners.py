@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 from ompl import base as ob
 from ompl import geometric as og
 
@@ -20,6 +22,7 @@ _WITHOUT_CIRCLES = frozenset(
 )
 
 
+@cache
 def available_planners(*, circles: bool = False) -> tuple[str, ...]:
     """The names that `make_planner` knows.
 

@@ -36,7 +36,8 @@ class Sweep:
 
     def farthest(self, dq: Array) -> float:
         """The same as `distance` for one move (nq,)."""
-        return float((self._every @ np.abs(dq)).max())
+        ways: list[float] = (self._every @ np.abs(dq)).tolist()
+        return max(ways)
 
     def distance(self, dq: Array) -> Array:
         """A bound on the way (m) of any point, (...,), for joint moves (..., nq)."""

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from mmplan.collision import CollisionWorld
+from mmplan.collision import CollisionWorld, compile_motions
 from mmplan.collision.checker import Checker
 from mmplan.collision.clear_cells import clear_cells
 from mmplan.collision.compiled_broadphase import CompiledBroadphase
@@ -26,14 +26,20 @@ everywhere = pytest.mark.parametrize(("name", "where"), WORLDS)
 @cache
 def checkers(name: str, where: str) -> tuple[Checker, Checker]:
     """A checker with the compiled broadphase, and one with that in numpy."""
-    compiled, plain = (checker_of(carrying(name, where)) for _ in range(2))
-    assert isinstance(compiled._motions, CompiledBroadphase)
-    vars(plain)["_motions"] = plain._broadphase
-    return compiled, plain
+    plain = checker_of(carrying(name, where))
+    plain._compiled = plain._broadphase  # type: ignore[assignment]
+    return compiled_checker(carrying(name, where)), plain
 
 
 def checker_of(world: CollisionWorld) -> Checker:
     return Checker(world.robot, world._assembly)
+
+
+def compiled_checker(world: CollisionWorld) -> Checker:
+    compile_motions()
+    checker = checker_of(world)
+    assert isinstance(checker._motions, CompiledBroadphase)
+    return checker
 
 
 def edges(seed: int) -> tuple[Array, Array]:
@@ -108,7 +114,7 @@ def test_what_is_known_of_two_links_changes_no_answer() -> None:
     group = robot.arm
     q = np.tile(robot.q_neutral, (800, 1))
     q[:, group.indices] = rng.uniform(group.lower, group.upper, (800, len(group)))
-    before, learnt = checker_of(world), checker_of(world)
+    before, learnt = compiled_checker(world), compiled_checker(world)
     assert before._motions is not learnt._motions  # made before any table is
     tables = 0
     for pair, (i, j) in enumerate(world.pairs.tolist()):

@@ -9,6 +9,7 @@ import numpy as np
 
 from mmplan.benchmarking.paths.arena import Arena
 from mmplan.benchmarking.paths.records import Answer, Prepared
+from mmplan.collision import compile_motions
 from mmplan.planning import PathChecker, PathResult, plan_path
 from mmplan.problem import PlannerSettings
 from mmplan.shapes import Array
@@ -26,6 +27,8 @@ class OwnPlanner:
     def __call__(self, arena: Arena) -> Prepared:
         """Prepare the collision checks of an arena."""
         begin = time.process_time()
+        compile_motions()
+        PathChecker(arena.world, self.settings.resolution)
         arena.world.any_collision(arena.q_start[None])
         still = np.zeros_like(arena.q_start)
         arena.world.steps_collide(arena.q_start, still, 1)
