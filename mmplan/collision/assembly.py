@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -70,14 +71,8 @@ def assemble(
     scene and with what is carried must keep the `clearance`. What is carried must keep
     out of the `regions`.
     """
-    geometry = robot.geometry.clone()
-    bodies = [
-        Body(robot.link_of(g), robot.kind_of(g), int(g.parentJoint))
-        for g in geometry.geometryObjects
-    ]
-    for solid in scenery.obstacles:
-        kind = "ground" if scenery.is_ground(solid.owner) else "obstacle"
-        _add(geometry, bodies, solid, kind, 0, np.eye(4))
+    geometry, bodies = _among_obstacles(robot, scenery)
+    geometry, bodies = geometry.clone(), bodies.copy()
     for region in regions:
         _add(geometry, bodies, solid_of_region(region), "region", 0, np.eye(4))
     for name, T_world_object in standing.items():
@@ -102,6 +97,25 @@ def assemble(
         np.array(pairs, dtype=np.int64).reshape(-1, 2),
         np.array(depth),
     )
+
+
+@lru_cache(maxsize=4)
+def _among_obstacles(
+    robot: Robot, scenery: Scenery
+) -> tuple[pin.GeometryModel, list[Body]]:
+    """The bodies of robot and obstacles, for worlds to begin with copies of.
+
+    Pinocchio takes a time for each body that rises with the number of bodies.
+    """
+    geometry = robot.geometry.clone()
+    bodies = [
+        Body(robot.link_of(g), robot.kind_of(g), int(g.parentJoint))
+        for g in geometry.geometryObjects
+    ]
+    for solid in scenery.obstacles:
+        kind = "ground" if scenery.is_ground(solid.owner) else "obstacle"
+        _add(geometry, bodies, solid, kind, 0, np.eye(4))
+    return geometry, bodies
 
 
 def _add(
@@ -130,13 +144,14 @@ def _scene_pairs(bodies: list[Body], touch: TouchRules) -> list[tuple[int, int]]
     Regions are there for what is carried alone, which comes last.
     """
     moving = ("base", "arm", "finger", "attached")
+    movers = [i for i, body in enumerate(bodies) if body.kind in moving]
     return [
         (i, j)
         for j, scene in enumerate(bodies)
         if scene.kind not in (*moving[:3], "region")
-        for i, mover in enumerate(bodies[:j])
-        if mover.kind in moving or scene.kind == "attached"
-        if mover.joint != scene.joint and not _may_touch(mover, scene, touch)
+        for i in (range(j) if scene.kind == "attached" else movers)
+        if i < j and bodies[i].joint != scene.joint
+        if not _may_touch(bodies[i], scene, touch)
     ]
 
 

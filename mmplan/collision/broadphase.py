@@ -35,6 +35,8 @@ _PADDING = 1e-6
 # Configurations looked at in one go: few at first where a hit among them may be enough,
 # and not so many that the arrays leave the cache.
 _FIRST_CHUNK, _LAST_CHUNK = 16, 256
+# So few owners of bodies that stand still are compared with each link at once.
+_FEW_OWNERS = 32
 # Motions are cut into stretches on whose halves bodies move no farther than this, m.
 _REACH = 0.01
 
@@ -150,8 +152,7 @@ class Broadphase:
 
     def _with_static(self, T: Array, links: Bounds, reach: float) -> Suspects:
         """Link against owner, then body against owner, then body against body."""
-        near = _overlap(_each(links), self._owner_bounds) & self._watched
-        row, link, owner = np.nonzero(near)
+        row, link, owner = self._near_owners(links)
         repeat, body = self._links.members(link)
         row, owner = row[repeat], owner[repeat]
         bounds = self._bounds(T, row, body, reach)
@@ -163,6 +164,26 @@ class Broadphase:
         touching = _overlap(_taken(bounds, repeat), _taken(self._static, other))
         touching &= pair >= 0
         return Suspects(row[repeat][touching], pair[touching])
+
+    def _near_owners(self, links: Bounds) -> tuple[Indices, Indices, Indices]:
+        """Rows, links and owners whose bounds overlap.
+
+        Of many owners most are far from the whole robot, and looked at once a row.
+        """
+        owners = self._owner_bounds
+        if len(owners.centre) <= _FEW_OWNERS:
+            row, link, owner = np.nonzero(
+                _overlap(_each(links), owners) & self._watched
+            )
+            return row, link, owner
+        low, high = links.centre - links.half, links.centre + links.half
+        low, high = low.min(axis=1, keepdims=True), high.max(axis=1, keepdims=True)
+        robot = Bounds((low + high) / 2, (high - low) / 2)
+        row, owner = np.nonzero(_overlap(robot, owners))
+        there = Bounds(owners.centre[owner, None], owners.half[owner, None])
+        near = _overlap(_taken(links, row), there) & self._watched.T[owner]
+        which, link = np.nonzero(near)
+        return row[which], link, owner[which]
 
     def _among_moving(self, T: Array, links: Bounds, reach: float) -> Suspects:
         """Link against link, then body against body."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import coal
 import numpy as np
+import numpy.typing as npt
 
 from mmplan.array_cache import cached
 from mmplan.collision.decomposition import Effort, cut
@@ -92,26 +93,42 @@ def _check_size(mesh: Mesh, vertices: Array, largest: float) -> None:
 def _parts(surface: TriangleMesh) -> list[TriangleMesh]:
     """The surfaces of a mesh that do not hang together.
 
-    A surface that bounds a cavity inside of another stays with all others.
+    Surfaces that only touch each other, at corners or along edges, do not. A surface
+    that bounds a cavity inside of another stays with all others.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     vertices, triangles = surface
-    start, end = triangles[:, :2].ravel(), triangles[:, 1:].ravel()
-    n = len(vertices)
-    links = coo_array((np.ones(len(start), np.int8), (start, end)), shape=(n, n))
-    _, label = connected_components(links, directed=False)
-    part_of = label[triangles[:, 0]]
+    part_of = _linked(surface)
     order = np.argsort(part_of, kind="stable")
     ends = np.flatnonzero(np.diff(part_of[order])) + 1
     parts = []
     for own in np.split(triangles[order], ends):
         used, compact = np.unique(own, return_inverse=True)
         parts.append(TriangleMesh(vertices[used], compact.reshape(-1, 3)))
-    if len(parts) == 1 or any(_signed_volume(part) <= 0.0 for part in parts):
+    if len(parts) == 1 or any(
+        _signed_volume(part) <= 0.0 or not _is_closed(part) for part in parts
+    ):
         return [surface]
     return parts
+
+
+def _linked(surface: TriangleMesh) -> npt.NDArray[np.int64]:
+    """A number for each triangle (t,), the same for those that hang together.
+
+    Two triangles do that have an edge in common which no other has.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    n, t = len(surface.vertices), len(surface.triangles)
+    ends = np.sort(surface.triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2)
+    edge = (ends[:, :, 0] * n + ends[:, :, 1]).ravel()
+    order = np.argsort(edge)
+    start = np.flatnonzero(np.diff(edge[order], prepend=-1))
+    own = start[np.diff(start, append=len(edge)) == 2]
+    first, second = order[own] // 3, order[own + 1] // 3
+    links = coo_array((np.ones(len(own), np.int8), (first, second)), shape=(t, t))
+    labels: npt.NDArray[np.int64] = connected_components(links, directed=False)[1]
+    return labels
 
 
 def _fault(surface: TriangleMesh) -> str | None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
 from mmplan.collision.meshes import hulls
 from mmplan.collision.solids import Solid, geometries, solids_of_obstacle
 from mmplan.problem import Object, Problem
@@ -50,6 +52,11 @@ class Scenery:
             solids = geometries(item.shape)
         return tuple(Solid(item.name, solid, np.eye(4)) for solid in solids)
 
+    @cached_property
+    def obstacle_bounds(self) -> Bounds:
+        """The axis-aligned boxes (n, 3) about the obstacles, in the world."""
+        return world_bounds(self.obstacles, np.eye(4))
+
     def is_ground(self, owner: str) -> bool:
         """Whether the base drives on this obstacle (or fixture's link)."""
         return owner.partition("/")[0] in self.grounds
@@ -57,6 +64,17 @@ class Scenery:
     def centre_of_mass(self, name: str) -> Array:
         """The centre of mass (3,) of an object of even density, in its own frame."""
         return centre_of_mass(self.objects[name])
+
+
+def world_bounds(solids: Sequence[Solid], T_world_owner: Array) -> Bounds:
+    """The axis-aligned boxes (n, 3) about an owner's solids, in the world."""
+    local = [local_bounds(s.geometry) for s in solids]
+    stacked = Bounds(
+        np.array([b.centre for b in local]).reshape(-1, 3),
+        np.array([b.half for b in local]).reshape(-1, 3),
+    )
+    placements = np.array([s.placement for s in solids]).reshape(-1, 4, 4)
+    return moved_bounds(stacked, T_world_owner @ placements)
 
 
 def centre_of_mass(solids: tuple[Solid, ...]) -> Array:

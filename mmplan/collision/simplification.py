@@ -10,8 +10,8 @@ import numpy.typing as npt
 from mmplan.collision.mesh_files import TriangleMesh
 from mmplan.shapes import Array
 
-# CoACD takes half a minute for so many triangles.
-MOST_TRIANGLES = 20_000
+# CoACD takes half a minute for so many triangles of a simple shape.
+MOST_TRIANGLES = 10_000
 # How far the surface is moved at first, as a share of the solid's size, how much more
 # each time that this does not suffice, and at last.
 _FIRST_MOVE, _MORE, _LAST_MOVE = 2.5e-4, 1.5, 0.01

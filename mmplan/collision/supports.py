@@ -8,13 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mmplan.collision.bounds import (
-    Bounds,
-    local_bounds,
-    moved_bounds,
-    touching_depth,
-)
-from mmplan.collision.scenery import Scenery
+from mmplan.collision.bounds import Bounds, local_bounds, touching_depth
+from mmplan.collision.scenery import Scenery, world_bounds
 from mmplan.collision.separation import signed_distance, transform
 from mmplan.collision.solids import Solid
 from mmplan.shapes import Array
@@ -93,36 +88,27 @@ def _near(
 ) -> Iterator[tuple[Solid, Solid, float]]:
     """Solids of an object and of others that are that near, with their distances."""
     solids = scenery.objects[name]
-    bounds = _world_bounds(solids, T_world_object)
-    for other, T_world_owner in _others(scenery, name, standing):
-        gaps = bounds.gap(_world_bounds((other,), T_world_owner))
-        for i in np.flatnonzero(gaps <= max(within, 0.0)):
+    bounds = world_bounds(solids, T_world_object)
+    for others, T_world_owner, around in _others(scenery, name, standing):
+        each = Bounds(bounds.centre[:, None], bounds.half[:, None])
+        near = each.gap(around) <= max(within, 0.0)
+        for j, i in np.argwhere(near.T).tolist():
             distance = signed_distance(
                 solids[i].geometry,
                 transform(T_world_object @ solids[i].placement),
-                other.geometry,
-                transform(T_world_owner @ other.placement),
+                others[j].geometry,
+                transform(T_world_owner @ others[j].placement),
             )
             if distance <= within:
-                yield solids[i], other, distance
+                yield solids[i], others[j], distance
 
 
 def _others(
     scenery: Scenery, name: str, standing: Mapping[str, Array]
-) -> Iterator[tuple[Solid, Array]]:
-    """All solids but an object's own, and the pose of what they belong to."""
-    for solid in scenery.obstacles:
-        yield solid, np.eye(4)
+) -> Iterator[tuple[tuple[Solid, ...], Array, Bounds]]:
+    """All solids but an object's own, the pose of what they belong to, and bounds."""
+    yield scenery.obstacles, np.eye(4), scenery.obstacle_bounds
     for other, T_world_other in standing.items():
         if other != name:
-            for solid in scenery.objects[other]:
-                yield solid, T_world_other
-
-
-def _world_bounds(solids: tuple[Solid, ...], T_world_owner: Array) -> Bounds:
-    local = [local_bounds(s.geometry) for s in solids]
-    stacked = Bounds(
-        np.array([b.centre for b in local]), np.array([b.half for b in local])
-    )
-    placements = np.array([s.placement for s in solids])
-    return moved_bounds(stacked, T_world_owner @ placements)
+            solids = scenery.objects[other]
+            yield solids, T_world_other, world_bounds(solids, T_world_other)
