@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import coal
 import numpy as np
-import numpy.typing as npt
 
 from mmplan.array_cache import cached
 from mmplan.collision.decomposition import Effort, cut
 from mmplan.collision.enclosing import enclosing
 from mmplan.collision.mesh_files import TriangleMesh, content_key, read_surface
+from mmplan.collision.mesh_parts import is_closed, parts, signed_volume
 from mmplan.exceptions import InputError
 from mmplan.shapes import Array, Mesh
 
@@ -18,7 +18,7 @@ _CONVEX_VOLUME_RATIO = 1.01
 # CoACD's own 150 iterations take 10 times as long and gain a few pieces.
 _EFFORT = Effort(concavity=0.02, iterations=20)
 # A new number for each change of the method: what caches hold is then made anew.
-_METHOD = 1
+_METHOD = 2
 
 
 def convex_pieces(mesh: Mesh, largest: float = np.inf) -> list[Array]:
@@ -40,8 +40,9 @@ def convex_pieces(mesh: Mesh, largest: float = np.inf) -> list[Array]:
         _check_size(mesh, surface.vertices, largest)
         if fault := _fault(surface):
             raise InputError(f"{mesh.path}: this mesh {fault}")
-        parts = _parts(surface)
-        return [enclosing(piece) for part in parts for piece in _pieces(mesh, part)]
+        return [
+            enclosing(piece) for part in parts(surface) for piece in _pieces(mesh, part)
+        ]
 
     pieces = cached("meshes", content_key(mesh, _EFFORT, _METHOD), make)
     _check_size(mesh, np.concatenate(pieces), largest)
@@ -63,7 +64,7 @@ def hull(points: Array) -> coal.ConvexBase:
 def _pieces(mesh: Mesh, part: TriangleMesh) -> list[Array]:
     """The corners of the pieces of a surface that hangs together."""
     corners, volume = _hull(part.vertices)
-    if abs(_signed_volume(part)) * _CONVEX_VOLUME_RATIO >= volume:
+    if abs(signed_volume(part)) * _CONVEX_VOLUME_RATIO >= volume:
         return [corners]
     return [_hull(piece)[0] for piece in cut(mesh.path, part, _EFFORT)]
 
@@ -90,47 +91,6 @@ def _check_size(mesh: Mesh, vertices: Array, largest: float) -> None:
         )
 
 
-def _parts(surface: TriangleMesh) -> list[TriangleMesh]:
-    """The surfaces of a mesh that do not hang together.
-
-    Surfaces that only touch each other, at corners or along edges, do not. A surface
-    that bounds a cavity inside of another stays with all others.
-    """
-    vertices, triangles = surface
-    part_of = _linked(surface)
-    order = np.argsort(part_of, kind="stable")
-    ends = np.flatnonzero(np.diff(part_of[order])) + 1
-    parts = []
-    for own in np.split(triangles[order], ends):
-        used, compact = np.unique(own, return_inverse=True)
-        parts.append(TriangleMesh(vertices[used], compact.reshape(-1, 3)))
-    if len(parts) == 1 or any(
-        _signed_volume(part) <= 0.0 or not _is_closed(part) for part in parts
-    ):
-        return [surface]
-    return parts
-
-
-def _linked(surface: TriangleMesh) -> npt.NDArray[np.int64]:
-    """A number for each triangle (t,), the same for those that hang together.
-
-    Two triangles do that have an edge in common which no other has.
-    """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    n, t = len(surface.vertices), len(surface.triangles)
-    ends = np.sort(surface.triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2)
-    edge = (ends[:, :, 0] * n + ends[:, :, 1]).ravel()
-    order = np.argsort(edge)
-    start = np.flatnonzero(np.diff(edge[order], prepend=-1))
-    own = start[np.diff(start, append=len(edge)) == 2]
-    first, second = order[own] // 3, order[own + 1] // 3
-    links = coo_array((np.ones(len(own), np.int8), (first, second)), shape=(t, t))
-    labels: npt.NDArray[np.int64] = connected_components(links, directed=False)[1]
-    return labels
-
-
 def _fault(surface: TriangleMesh) -> str | None:
     """Why the mesh is no solid, None if it is one."""
     vertices = surface.vertices
@@ -138,27 +98,9 @@ def _fault(surface: TriangleMesh) -> str | None:
         return "has a vertex that is not finite"
     if np.linalg.matrix_rank(vertices - vertices.mean(axis=0), tol=1e-9) < 3:
         return "is flat; a closed solid is needed"
-    if not _is_closed(surface):
+    if not is_closed(surface):
         return (
             "is not closed: some edge has a triangle on one side only, or two that do "
             "not face the same way"
         )
     return None
-
-
-def _is_closed(surface: TriangleMesh) -> bool:
-    """Whether every edge is passed as often one way as the other.
-
-    So it is only where the surface has no border and all triangles face the same side.
-    """
-    a, b, c = surface.triangles.T
-    start, end = np.concatenate([a, b, c]), np.concatenate([b, c, a])
-    n = len(surface.vertices)
-    return np.array_equal(np.sort(start * n + end), np.sort(end * n + start))
-
-
-def _signed_volume(surface: TriangleMesh) -> float:
-    """The volume by the divergence theorem; negative where triangles face inward."""
-    vertices, triangles = surface
-    a, b, c = (vertices[triangles[:, i]] for i in range(3))
-    return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0

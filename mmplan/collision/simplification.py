@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from mmplan.collision.mesh_files import TriangleMesh
 from mmplan.shapes import Array
+
+Indices: TypeAlias = npt.NDArray[np.int64]
 
 # CoACD takes half a minute for so many triangles of a simple shape.
 MOST_TRIANGLES = 10_000
@@ -56,26 +59,43 @@ def grown(pieces: list[Array], points: Array) -> list[Array]:
 
     A point that is in none joins the piece that it is the least outside of.
     """
-    from scipy.spatial import ConvexHull
-
-    size = float(np.ptp(points, axis=0).max())
     outside = np.full(len(points), np.inf)
     piece_of = np.full(len(points), -1)
-    for number, piece in enumerate(pieces):
-        planes = ConvexHull(piece, qhull_options="QJ Pp").equations
-        for rows in _near(piece, points, _LAST_MOVE * size):
-            depth = (points[rows] @ planes[:, :3].T + planes[:, 3]).max(axis=1)
-            better = depth < outside[rows]
-            outside[rows[better]], piece_of[rows[better]] = depth[better], number
+    planes = [_planes(piece) for piece in pieces]
+    reach = _LAST_MOVE * float(np.ptp(points, axis=0).max())
+    while len(left := np.flatnonzero(piece_of < 0)):
+        for number, piece in enumerate(pieces):
+            for rows in _near(piece, points, left, reach):
+                depth = _depth(points[rows], planes[number])
+                better = depth < outside[rows]
+                outside[rows[better]], piece_of[rows[better]] = depth[better], number
+        reach *= 2.0
     return [
         np.concatenate([piece, points[(piece_of == number) & (outside > 0.0)]])
         for number, piece in enumerate(pieces)
     ]
 
 
-def _near(piece: Array, points: Array, reach: float) -> Iterator[npt.NDArray[np.int64]]:
-    """Rows of the points in the box about a piece or within reach of it, in chunks."""
+def _planes(piece: Array) -> Array:
+    """The planes (k, 4) of a hull: outward normals and offsets."""
+    from scipy.spatial import ConvexHull
+
+    planes: Array = ConvexHull(piece, qhull_options="QJ Pp").equations
+    return planes
+
+
+def _depth(points: Array, planes: Array) -> Array:
+    """How far points (n, 3) are beyond the plane that they are farthest beyond."""
+    depth: Array = (points @ planes[:, :3].T + planes[:, 3]).max(axis=1)
+    return depth
+
+
+def _near(
+    piece: Array, points: Array, rows: Indices, reach: float
+) -> Iterator[Indices]:
+    """Those rows of points that are within reach of the box about a piece."""
     low, high = piece.min(axis=0) - reach, piece.max(axis=0) + reach
-    rows = np.flatnonzero(np.all((points >= low) & (points <= high), axis=1))
+    inside = np.all((points[rows] >= low) & (points[rows] <= high), axis=1)
+    rows = rows[inside]
     for start in range(0, len(rows), _CHUNK):
         yield rows[start : start + _CHUNK]
