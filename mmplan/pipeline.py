@@ -124,25 +124,37 @@ def _first_plan(
     report: Progress,
 ) -> Plan | None:
     """The first verified plan; what candidates before it fail at joins `attempts`."""
+    together = score.problem.planner.goals
+    for first in range(0, len(found.candidates), together):
+        report("planning", first, len(found.candidates))
+        triples = found.candidates[first : first + together]
+        candidates = [Candidate.of_triple(triple, score) for triple in triples]
+        for k, planned in motion.plan_together(candidates, rng):
+            plan: Plan | Blocked
+            if isinstance(planned, Blocked):
+                plan = planned
+            else:
+                plan = _verified(score, candidates[k], planned, seed)
+            if isinstance(plan, Plan):
+                return plan
+            attempts.append(Attempt(triples[k].total, plan))
+    return None
+
+
+def _verified(
+    score: ScoreFunction, candidate: Candidate, segments: tuple[Segment, ...], seed: int
+) -> Plan | Blocked:
+    """The plan with these segments, if it passes the verifier."""
     problem, task = score.problem, score.task
     names, family = grasp_family(problem.object(task.object))
-    for k, triple in enumerate(found.candidates):
-        report("planning", k, len(found.candidates))
-        candidate = Candidate.of_triple(triple, score)
-        segments = motion.plan(candidate, rng)
-        if isinstance(segments, Blocked):
-            attempts.append(Attempt(triple.total, segments))
-            continue
-        name = names[_family_number(family, triple.grasp)]
-        plan = assemble_plan(
-            problem, [_task_plan(task.object, name, candidate, segments)], seed
-        )
-        verification = examine(plan, problem)
-        if verification.ok:
-            return replace(plan, verification=verification)
-        fault = str(verification.faults[0])
-        attempts.append(Attempt(triple.total, Blocked("verification", fault)))
-    return None
+    name = names[_family_number(family, candidate.triple.grasp)]
+    plan = assemble_plan(
+        problem, [_task_plan(task.object, name, candidate, segments)], seed
+    )
+    verification = examine(plan, problem)
+    if verification.ok:
+        return replace(plan, verification=verification)
+    return Blocked("verification", str(verification.faults[0]))
 
 
 def _lines_in_the_way(task: Task, attempts: list[Attempt]) -> bool:

@@ -125,10 +125,11 @@ class PlannerSettings:
     """Which planner and how far it may go before it gives up.
 
     Planning is bounded by `iterations` (of the planner, for one path) and `candidates`
-    (how many distinct goals of the optimizer are tried), so that one seed gives one
-    plan; `time_limit` (s, for one path) is the safety net. `resolution` (m) is the
-    longest way that any point of the robot moves between two collision checks; a
-    `continuous` motion check finds what touches between these as well.
+    (how many distinct goals of the optimizer are tried, `goals` of them in one search:
+    the one that it reaches first comes first), so that one seed gives one plan;
+    `time_limit` (s, for one path) is the safety net. `resolution` (m) is the longest
+    way that any point of the robot moves between two collision checks; a `continuous`
+    motion check finds what touches between these as well.
     Paths keep `clearance` (m) from all that their ends are not nearer to already.
     `shortcuts` is the number of attempts at shortening a path. `base_weight` is how
     much more a way of the base counts in a path's length than the same way of the arm.
@@ -138,6 +139,7 @@ class PlannerSettings:
     name: str = "RRTConnect"
     iterations: int = 3_000
     candidates: int = 10
+    goals: int = 1
     time_limit: float = 10.0
     resolution: float = 0.01
     clearance: float = 0.002

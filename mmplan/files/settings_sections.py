@@ -115,6 +115,8 @@ class PlannerSection(Section):
     """Iterations of the planner for one path before it gives up."""
     candidates: Count = PlannerSettings.candidates
     """How many distinct results of the optimizer are tried."""
+    goals: Count = PlannerSettings.goals
+    """How many of these are goals of one search; the first reached comes first."""
     time_limit: Positive = PlannerSettings.time_limit
     """Safety net for one path, s; a plan that depends on it cannot be repeated."""
     resolution: Annotated[Positive, AfterValidator(_fine)] = PlannerSettings.resolution

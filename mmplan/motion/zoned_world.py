@@ -75,6 +75,19 @@ def with_zones(world: CollisionWorld, problem: Problem, *ends: Array) -> Plannin
     return ZonedWorld(world, problem, max(0.0, min(problem.planner.clearance, kept)))
 
 
+def are_alike(first: PlanningWorld, second: PlanningWorld) -> bool:
+    """Whether two worlds of one scene, with its zones or without, have the same rules.
+
+    That is the same distances to keep. Worlds with other rules are never alike.
+    """
+    if isinstance(first, ZonedWorld) and isinstance(second, ZonedWorld):
+        same = first.margin == second.margin
+        return same and are_alike(first.world, second.world)
+    if isinstance(first, CollisionWorld) and isinstance(second, CollisionWorld):
+        return first.clearance == second.clearance
+    return first is second
+
+
 def _clearances(problem: Problem, q: Array, name: str | None = None) -> Array:
     """How far the base keeps from all zones, or from one, at q (n, nq), (n,)."""
     robot = problem.robot

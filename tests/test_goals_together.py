@@ -1,0 +1,132 @@
+"""Several candidates are goals of one search."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import mmplan
+from mmplan import pipeline
+from mmplan.candidate import Candidate
+from mmplan.exceptions import NoPlanError
+from mmplan.motion import Blocked, TaskMotion, task_motion
+from mmplan.motion.ways import Way, WayFinder
+from mmplan.optimizers import Optimization
+from mmplan.planning import PlanningWorld
+from mmplan.problem import Obstacle, PlannerSettings, Problem
+from mmplan.scoring import End, ScoreFunction
+from mmplan.shapes import Array, Box
+from tests.honest import shift
+from tests.tabletop import cup_problem
+
+GOALS = 6
+
+
+@cache
+def optimized() -> tuple[ScoreFunction, Optimization]:
+    """The score of a problem, and what its optimizer found."""
+    score = pipeline.score_function(cup_problem())
+    rng = np.random.default_rng(0)
+    return score, pipeline._optimize(score, rng, pipeline._ignore)
+
+
+def found() -> list[Candidate]:
+    score, search = optimized()
+    return [Candidate.of_triple(t, score) for t in search.candidates[:GOALS]]
+
+
+def motion() -> TaskMotion:
+    score, _ = optimized()
+    return TaskMotion(score.problem, score.task, score.worlds[End.START])
+
+
+def test_each_candidate_has_one_outcome() -> None:
+    rng = np.random.default_rng(1)
+    outcomes = list(motion().plan_together(found(), rng))
+    assert sorted(number for number, _ in outcomes) == list(range(len(found())))
+    moved = [(k, o) for k, o in outcomes if not isinstance(o, Blocked)]
+    assert len(moved) > 1
+    for number, segments in moved:
+        approach = next(s for s in segments if s.name == "grasp")
+        base = cup_problem().robot.base.indices
+        np.testing.assert_allclose(
+            approach.positions[0, base], found()[number].q[End.START][base], atol=1e-9
+        )
+
+
+def test_one_search_looks_for_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[int] = []
+    find = WayFinder.find
+
+    def counted(
+        self: WayFinder, q_start: Array, q_goals: Array, rng: np.random.Generator
+    ) -> Way:
+        asked.append(len(q_goals))
+        return find(self, q_start, q_goals, rng)
+
+    monkeypatch.setattr(WayFinder, "find", counted)
+    together = motion().plan_together(found(), np.random.default_rng(1))
+    first = next(k for k, outcome in together if not isinstance(outcome, Blocked))
+    assert max(asked) > 1
+    alone = motion().plan(found()[first], np.random.default_rng(1))
+    assert not isinstance(alone, Blocked)
+
+
+def test_one_goal_alone_is_as_it_was() -> None:
+    """The candidates' order counts, and random numbers are drawn as for one."""
+    (number, together), *_ = motion().plan_together(
+        found()[:1], np.random.default_rng(3)
+    )
+    alone = motion().plan(found()[0], np.random.default_rng(3))
+    assert number == 0
+    assert not isinstance(together, Blocked)
+    assert not isinstance(alone, Blocked)
+    for a, b in zip(together, alone, strict=True):
+        assert np.array_equal(a.positions, b.positions)
+
+
+def test_worlds_with_other_rules_are_looked_at_apart(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def never(first: PlanningWorld, second: PlanningWorld) -> bool:
+        return first is second
+
+    monkeypatch.setattr(task_motion, "are_alike", never)
+    outcomes = motion().plan_together(found(), np.random.default_rng(1))
+    numbers = [number for number, _ in outcomes]
+    assert numbers == sorted(numbers)  # nobody overtakes
+
+
+def with_goals(problem: Problem) -> Problem:
+    planner = PlannerSettings(goals=GOALS, iterations=400, candidates=4)
+    return replace(problem, planner=planner)
+
+
+def test_a_plan_with_goals_together_is_proven_and_repeats() -> None:
+    problem = with_goals(cup_problem())
+    plan, again = (mmplan.solve(problem, seed=2) for _ in range(2))
+    assert mmplan.verify(plan, cup_problem()).ok
+    for a, b in zip(plan.tasks[0].segments, again.tasks[0].segments, strict=True):
+        assert np.array_equal(a.positions, b.positions)
+
+
+def test_all_that_cannot_be_reached_are_accounted_for() -> None:
+    x = y = -1.3
+    walls = (
+        Obstacle("north", Box((1.4, 0.02, 2.0)), shift(x, y + 0.7, 1.0)),
+        Obstacle("south", Box((1.4, 0.02, 2.0)), shift(x, y - 0.7, 1.0)),
+        Obstacle("east", Box((0.02, 1.4, 2.0)), shift(x + 0.7, y, 1.0)),
+        Obstacle("west", Box((0.02, 1.4, 2.0)), shift(x - 0.7, y, 1.0)),
+    )
+    problem = with_goals(cup_problem(*walls))
+    q_start = problem.q_start.copy()
+    q_start[problem.robot.base.indices] = x, y
+    with pytest.raises(NoPlanError) as caught:
+        mmplan.solve(replace(problem, q_start=q_start), seed=0)
+    assert caught.value.report is not None
+    assert caught.value.report.reason == (
+        "all 4 candidates failed on the way: transit (4)"
+    )
