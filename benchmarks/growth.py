@@ -1,7 +1,7 @@
 """How cost grows with obstacles, triangles, populations and joints.
 
     python benchmarks/growth.py [--studies obstacles triangles populations joints]
-        [--seeds 5] [--picture docs/pictures/growth.webp]
+        [--seeds 3] [--save growth.json] [--picture docs/pictures/growth.webp]
 
 - obstacles: the scene `wineglass` among 0 to 1,000 boxes of 4 to 15 cm, wherever the
   robot does not need the room: under the ceiling, over the counter, along the walls.
@@ -9,7 +9,8 @@
 - populations: `wineglass`, all three populations and the budget times a factor.
 - joints: a block moved on a table by every robot shipped, its base driving or fixed.
 
-Each study prints a table, and all together are one picture. Times are CPU seconds of
+Each study prints a table. Results are added to those in the file to `--save` to, and
+all of these together are one picture. Times are CPU seconds of
 loading and solving in one process, imports done: the search for bases and grasp, and
 all else, which is paths, timing and proof.
 """
@@ -17,6 +18,7 @@ all else, which is paths, timing and proof.
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import tempfile
 import time
@@ -36,7 +38,7 @@ from mmplan.problem import Obstacle, Problem
 from mmplan.shapes import Box, read_only
 
 _OBSTACLES = (0, 10, 30, 100, 300, 1000)
-_TRIANGLES = (10_000, 30_000, 100_000, 300_000, 1_000_000, 3_000_000)
+_TRIANGLES = (10_000, 100_000, 300_000, 1_000_000, 3_000_000)
 _FACTORS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 # The room of `wineglass`, the part of it that the robot needs, and how far from the
 # glass, where it stands and where it goes, nothing is put, m.
@@ -80,20 +82,33 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--studies", nargs="+", choices=_STUDIES, default=_STUDIES)
-    parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--studies", nargs="*", choices=_STUDIES, default=_NAMES)
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--save", type=Path)
     parser.add_argument("--picture", type=Path)
     options = parser.parse_args()
     mmplan.solve(mmplan.load_problem("wineglass"), seed=0)  # imports and compiles
-    results = {}
+    results = _saved(options.save)
     for name in options.studies:
         print(
             f"\n| {name} | solved | search s, median | all else s, median | total s |"
         )
         print("|---|---|---|---|---|")
         results[name] = [_printed(p) for p in _STUDIES[name](options.seeds)]
+        if options.save is not None:
+            options.save.write_text(json.dumps(results))
     if options.picture is not None:
         _draw(results, options.picture)
+
+
+def _saved(path: Path | None) -> dict[str, list[Point]]:
+    """The results of studies before."""
+    if path is None or not path.is_file():
+        return {}
+    return {
+        study: [Point(x, name, [Cost(*c) for c in costs]) for x, name, costs in points]
+        for study, points in json.loads(path.read_text()).items()
+    }
 
 
 def _printed(point: Point) -> Point:
@@ -260,6 +275,7 @@ _STUDIES = {
     "populations": _populations,
     "joints": _joints,
 }
+_NAMES = list(_STUDIES)
 _LABELS = {
     "obstacles": "obstacles in the scene",
     "triangles": "triangles in the scene",

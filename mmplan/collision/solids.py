@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import singledispatch
 from pathlib import Path
+from xml.etree import ElementTree as ET
 
 import coal
 import numpy as np
@@ -12,6 +13,8 @@ import pinocchio as pin
 
 from mmplan.collision import meshes, revolve
 from mmplan.exceptions import InputError
+from mmplan.files.located_xml import read_xml
+from mmplan.files.urdf_meshes import find_mesh
 from mmplan.problem import Obstacle
 from mmplan.shapes import (
     Array,
@@ -94,15 +97,59 @@ def _fixture_bodies(
     fixture: Fixture,
 ) -> list[tuple[str, coal.CollisionGeometry, Array]]:
     """Link name, geometry and pose in the fixture's frame, at its configuration."""
-    model, geometry = fixture_model(fixture, pin.GeometryType.COLLISION)
+    model, geometry, meshes_of = _collision_model(fixture)
     q = fixture_configuration(model, fixture)
     data, geometry_data = model.createData(), geometry.createData()
     pin.updateGeometryPlacements(model, data, geometry, geometry_data, q)
     return [
         (model.frames[body.parentFrame].name, solid, T.homogeneous)
         for body, T in zip(geometry.geometryObjects, geometry_data.oMg, strict=True)
-        for solid in _solids_of_body(body)
+        for solid in (
+            geometries(meshes_of[body.name])
+            if body.name in meshes_of
+            else [body.geometry]
+        )
     ]
+
+
+def _collision_model(
+    fixture: Fixture,
+) -> tuple[pin.Model, pin.GeometryModel, dict[str, Mesh]]:
+    """The joints of a fixture and its bodies, and the meshes among these by name.
+
+    Where there is a mesh a ball stands in: Pinocchio would read its triangles.
+
+    Raises:
+        InputError: Its URDF cannot be read, or a mesh is missing.
+    """
+    urdf, meshes_of = read_xml(fixture.path).root, dict[str, Mesh]()
+    for link in urdf.iter("link"):
+        for number, body in enumerate(link.iterfind("collision/geometry")):
+            if (mesh := body.find("mesh")) is not None:
+                name = f"{link.get('name')}_{number}"  # as Pinocchio calls it
+                meshes_of[name] = _mesh(mesh, fixture.path)
+                body.remove(mesh)
+                ET.SubElement(body, "sphere", radius="1")
+    try:
+        model = pin.buildModelFromUrdf(str(fixture.path))
+        geometry = pin.buildGeomFromUrdfString(
+            model, ET.tostring(urdf, "unicode"), pin.GeometryType.COLLISION
+        )
+    except (RuntimeError, ValueError) as error:
+        raise InputError(
+            f"{fixture.path}: this URDF cannot be read: {error}"
+        ) from error
+    return model, geometry, meshes_of
+
+
+def _mesh(element: ET.Element, urdf: Path) -> Mesh:
+    """The mesh that an element of a URDF names."""
+    name = element.get("filename", "")
+    path = find_mesh(name, urdf)
+    if path is None:
+        raise InputError(f"{urdf}: no such mesh: '{name}'")
+    x, y, z = (float(word) for word in element.get("scale", "1 1 1").split())
+    return Mesh(path, (x, y, z))
 
 
 def fixture_model(
@@ -146,11 +193,3 @@ def fixture_configuration(model: pin.Model, fixture: Fixture) -> Array:
             value if joint.nq == 1 else (np.cos(value), np.sin(value))
         )
     return q
-
-
-def _solids_of_body(body: pin.GeometryObject) -> list[coal.CollisionGeometry]:
-    """The body's geometry if it is a solid already, else the pieces of its mesh."""
-    if isinstance(body.geometry, coal.BVHModelBase):
-        x, y, z = (float(s) for s in body.meshScale)
-        return geometries(Mesh(Path(body.meshPath), (x, y, z)))
-    return [body.geometry]

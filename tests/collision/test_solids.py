@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import coal
 import numpy as np
 import pytest
 
-from mmplan.collision import solids_of_obstacle
+from mmplan.collision import meshes, solids_of_obstacle
 from mmplan.collision.solids import geometries
 from mmplan.exceptions import InputError
 from mmplan.problem import Object, Obstacle
@@ -233,6 +234,19 @@ def test_meshes_of_a_fixture_are_solid_and_scaled(cupboard: Path) -> None:
     solids = solids_of_obstacle(Obstacle("cupboard", Fixture(cupboard), np.eye(4)))
     (knob,) = (s for s in solids if s.owner == "cupboard/knob")
     assert knob.geometry.computeVolume() == pytest.approx(0.008 / 6, rel=1e-5)
+
+
+def test_triangles_of_a_fixture_that_was_loaded_before_are_not_read(
+    cupboard: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    obstacle = Obstacle("cupboard", Fixture(cupboard), np.eye(4))
+    before = solids_of_obstacle(obstacle)
+    monkeypatch.setattr(meshes, "read_surface", None)
+    monkeypatch.setattr(coal.MeshLoader, "load", None)
+    for ours, theirs in zip(solids_of_obstacle(obstacle), before, strict=True):
+        assert (ours.owner, ours.geometry) == (theirs.owner, theirs.geometry)
+        np.testing.assert_array_equal(ours.placement, theirs.placement)
 
 
 def test_a_joint_that_a_fixture_does_not_have(cupboard: Path) -> None:
