@@ -36,10 +36,17 @@ class Progress(Protocol):
         ...
 
 
-def solve(problem: Problem, *, seed: int = 0, progress: Progress | None = None) -> Plan:
+def solve(
+    problem: Problem,
+    *,
+    seed: int = 0,
+    progress: Progress | None = None,
+    jobs: int = 1,
+) -> Plan:
     """Find grasps, base placements and a verified, timed motion for all tasks.
 
-    The same problem, seed and machine give the same plan.
+    The same problem, seed and machine give the same plan, whatever the number of
+    `jobs`: with two, co-evolution scores both ends at the same time.
 
     Raises:
         NoPlanError: No plan was found; the error carries the account.
@@ -49,7 +56,7 @@ def solve(problem: Problem, *, seed: int = 0, progress: Progress | None = None) 
     rest, plans = problem, []
     for number, rng in enumerate(task_generators(problem, seed)):
         one = replace(rest, tasks=(problem.tasks[number],))
-        plan = _solve_task(one, number, seed, rng, report)
+        plan = _solve_task(one, number, seed, rng, report, jobs)
         plans.append(plan)
         rest = after_task(one, plan.tasks[0])
     if len(plans) == 1:
@@ -72,11 +79,16 @@ def _ignore(what: str, done: int, of: int | None) -> None:
 
 
 def _solve_task(
-    problem: Problem, number: int, seed: int, rng: np.random.Generator, report: Progress
+    problem: Problem,
+    number: int,
+    seed: int,
+    rng: np.random.Generator,
+    report: Progress,
+    jobs: int,
 ) -> Plan:
     """The verified plan of a problem with one task, the `number`th of the scene."""
     score = score_function(problem)
-    found = _optimize(score, rng, report)
+    found = _optimize(score, rng, report, jobs)
     plan, attempts = plan_candidates(score, found, seed, rng, report)
     if plan is not None:
         return plan
@@ -163,7 +175,7 @@ def _lines_in_the_way(task: Task, attempts: list[Attempt]) -> bool:
 
 
 def _optimize(
-    score: ScoreFunction, rng: np.random.Generator, report: Progress
+    score: ScoreFunction, rng: np.random.Generator, report: Progress, jobs: int = 1
 ) -> Optimization:
     evaluations = score.problem.optimizer.evaluations
     return optimize(
@@ -172,6 +184,7 @@ def _optimize(
         evaluations,
         score.problem.planner.candidates,
         lambda spent: report("optimization", spent, evaluations),
+        jobs,
     )
 
 

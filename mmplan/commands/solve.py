@@ -35,6 +35,13 @@ def add(commands: Any) -> None:
         help="score evaluations, instead of the scene's number",
     )
     solve.add_argument(
+        "--jobs",
+        type=positive,
+        default=1,
+        metavar="N",
+        help="processes, of which two are of use; the plan is the same; default: 1",
+    )
+    solve.add_argument(
         "--html", type=Path, metavar="FILE", help="write a page that shows the plan"
     )
     solve.add_argument(
@@ -58,7 +65,7 @@ def _solve(options: argparse.Namespace) -> int:
     from mmplan.terminal import plan_tables, progress_display, show
 
     with progress_display(quiet=options.quiet) as progress:
-        plan = solve(problem, seed=options.seed, progress=progress)
+        plan = solve(problem, seed=options.seed, progress=progress, jobs=options.jobs)
     if options.output is not None:
         plan.save(options.output)
     if options.json:

@@ -95,48 +95,52 @@ class CoEvolution:
 
     def _cycle_forever(self) -> _Search:
         while True:
-            for end in End:
-                yield from self._evolve_bases(end)
+            yield from self._evolve_bases()
             yield from self._evolve_grasps()
 
-    def _evolve_bases(self, end: End) -> _Search:
-        """A generation; F_Base is the best score with the k fittest grasps (eq. 3)."""
-        bases = self._bases[end]
-        if bases.size == 0:
+    def _evolve_bases(self) -> _Search:
+        """A generation of both; F_Base is the best with the k fittest grasps (eq. 3).
+
+        Neither counts for the other: the scores of both are asked for at once.
+        """
+        places = {end: self._space.bases[end] for end in End if self._bases[end].size}
+        if not places:
             return
-        q_base = self._space.bases[end].q_base(bases)
-        scores = yield from self._ask_all(end, q_base, self._fittest_grasps())
-        if scores is not None:
-            fitness = scores.max(axis=1)
-            self._bases[end] = self._next(bases, fitness, self._space.bases[end].genes)
+        q_base = {end: p.q_base(self._bases[end]) for end, p in places.items()}
+        scores = yield from self._ask_all(q_base, self._fittest_grasps())
+        for end, at_end in scores.items():
+            fitness, genes = at_end.max(axis=1), places[end].genes
+            self._bases[end] = self._next(self._bases[end], fitness, genes)
 
     def _evolve_grasps(self) -> _Search:
         """One generation; F_Grasp sums the scores with the k fittest bases."""
-        sides = []
-        for end in End:
-            k = self._settings.partners
-            q_base = self._space.bases[end].q_base(self._bases[end][:k])
-            scores = yield from self._ask_all(end, q_base, self._grasps)
-            if scores is None:
-                return
-            sides.append(scores.sum(axis=0))
-        fitness = grasp_fitness(*sides)
-        self._grasps = self._next(self._grasps, fitness, self._space.grasps)
+        k = self._settings.partners
+        q_base = {e: self._space.bases[e].q_base(self._bases[e][:k]) for e in End}
+        scores = yield from self._ask_all(q_base, self._grasps)
+        if len(scores) == len(End):
+            fitness = grasp_fitness(*(scores[end].sum(axis=0) for end in End))
+            self._grasps = self._next(self._grasps, fitness, self._space.grasps)
 
     def _fittest_grasps(self) -> Array:
         return self._grasps[: self._settings.partners]
 
     def _ask_all(
-        self, end: End, q_base: Array, grasps: Array
-    ) -> Generator[Queries, Array, Array | None]:
-        """The scores (bases, grasps) of all pairs; None if the budget ends before."""
-        n, m = len(q_base), len(grasps)
+        self, q_base: dict[End, Array], grasps: Array
+    ) -> Generator[Queries, Array, dict[End, Array]]:
+        """The scores (bases, grasps) of all pairs, of ends that the budget allows."""
+        m = len(grasps)
+        counts = [len(q) * m for q in q_base.values()]
         totals = yield Queries(
-            np.full(n * m, end, np.int8),
-            np.repeat(q_base, m, axis=0),
-            np.tile(grasps, (n, 1)),
+            np.repeat(np.array(list(q_base), np.int8), counts),
+            np.concatenate([np.repeat(q, m, axis=0) for q in q_base.values()]),
+            np.concatenate([np.tile(grasps, (len(q), 1)) for q in q_base.values()]),
         )
-        return totals.reshape(n, m) if len(totals) == n * m else None
+        ends = np.cumsum(counts)
+        return {
+            end: totals[last - count : last].reshape(-1, m)
+            for end, count, last in zip(q_base, counts, ends, strict=True)
+            if last <= len(totals)
+        }
 
     def _next(self, population: Array, fitness: Array, genes: GeneSpace) -> Array:
         """The fittest half, fittest first, then as many children as are missing."""

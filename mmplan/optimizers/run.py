@@ -12,6 +12,7 @@ import numpy.typing as npt
 from mmplan.optimizers.archive import Archive, Triple
 from mmplan.optimizers.bases import BasePlacements, OnePlacement, Placements
 from mmplan.optimizers.optimizer import Optimizer, Queries, SearchSpace
+from mmplan.optimizers.sharing import GoalProcess, goal_process
 from mmplan.scoring import End, Outcome, ScoreFunction
 from mmplan.shapes import Array
 
@@ -51,26 +52,30 @@ def optimize(
     evaluations: int,
     candidates: int,
     progress: Progress | None = None,
+    jobs: int = 1,
 ) -> Optimization:
     """Let an optimizer spend its budget of score evaluations.
 
     Every call of Score(q_base, grasp) that is asked for counts, also where the answer
-    is remembered. At most `candidates` distinct joint candidates are returned.
+    is remembered. At most `candidates` distinct joint candidates are returned. With two
+    `jobs` another process scores what an optimizer asks for at the goal together with
+    what it asks for at the start; the result is the same.
     """
     archive = Archive()
     history: list[tuple[int, float]] = []
     asked: list[Queries] = []
     outcomes = np.zeros((len(End), len(Outcome)), np.int64)
     spent = 0
-    while spent < evaluations:
-        queries = optimizer.ask(evaluations - spent)
-        totals = _evaluate(score, queries, outcomes)
-        history += _rises(archive, queries, totals, spent)
-        optimizer.tell(totals)
-        spent += len(totals)
-        asked.append(queries)
-        if progress is not None:
-            progress(spent)
+    with goal_process(score, jobs) as helper:
+        while spent < evaluations:
+            queries = optimizer.ask(evaluations - spent)
+            totals = _evaluate(score, queries, outcomes, helper)
+            history += _rises(archive, queries, totals, spent)
+            optimizer.tell(totals)
+            spent += len(totals)
+            asked.append(queries)
+            if progress is not None:
+                progress(spent)
     if not history or history[-1][0] < spent:
         history.append((spent, archive.best))
     return Optimization(
@@ -85,16 +90,26 @@ def optimize(
 
 
 def _evaluate(
-    score: ScoreFunction, queries: Queries, outcomes: npt.NDArray[np.int64]
+    score: ScoreFunction,
+    queries: Queries,
+    outcomes: npt.NDArray[np.int64],
+    helper: GoalProcess | None,
 ) -> Array:
     """The scores (n,) of what was asked for, counted by outcome."""
     totals = np.zeros(len(queries.end))
+    rows = {end: np.flatnonzero(queries.end == end) for end in End}
+    asked = {end: (queries.q_base[r], queries.grasps[r]) for end, r in rows.items()}
+    if helper is not None and len(rows[End.GOAL]):
+        helper.ask(*asked[End.GOAL])
     for end in End:
-        rows = np.flatnonzero(queries.end == end)
-        if len(rows) == 0:
+        if len(rows[end]) == 0:
             continue
-        scores = score(end, queries.q_base[rows], queries.grasps[rows])
-        totals[rows] = scores.total
+        if helper is not None and end == End.GOAL:
+            scores = helper.answer()
+            score.remember(end, *asked[end], scores)
+        else:
+            scores = score(end, *asked[end])
+        totals[rows[end]] = scores.total
         np.add.at(outcomes[end], scores.outcome, 1)
     return totals
 

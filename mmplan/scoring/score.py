@@ -139,6 +139,14 @@ class ScoreFunction:
         total, terms, q, outcome = np.split(rows, [1, first, rows.shape[1] - 1], axis=1)
         return Scores(total[:, 0], terms, q, outcome[:, 0].astype(np.int8))
 
+    def remember(self, end: End, q_base: Array, grasps: Array, scores: Scores) -> None:
+        """Take over scores that the same function gave elsewhere, row by row."""
+        keys = [b + g for b, g in zip(row_keys(q_base), row_keys(grasps), strict=True)]
+        total, terms, q, outcome = scores
+        self._scores[end].put(
+            list(keys), np.column_stack([total, terms, q, outcome.astype(np.float64)])
+        )
+
     def centre_of_mass(self, end: End) -> Array:
         """The object's centre of mass in the world at one end, (3,), m."""
         T = self.worlds[end].standing[self.task.object]

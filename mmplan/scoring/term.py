@@ -68,6 +68,11 @@ class RowCache:
             self._rows.update(zip(new, computed, strict=True))
         return np.array([self._rows[k] for k in keys])
 
+    def put(self, keys: list[Hashable], rows: Array) -> None:
+        """Keep the rows (n, d) of keys that are new."""
+        for key, row in zip(keys, rows, strict=True):
+            self._rows.setdefault(key, row)
+
 
 def row_keys(rows: Array) -> list[bytes]:
     """Hashable keys of the rows of an array (n, d)."""

@@ -22,21 +22,23 @@ ENDLESS = 10**9
 
 
 def generations(settings: OptimizerSettings, n: int) -> list[tuple[Queries, Array]]:
-    """What the first n batches of a search ask for and are told."""
+    """What a search asks for in n batches and is told, by end."""
     search = CoEvolution(SPACE, settings, np.random.default_rng(5))
-    batches = []
+    batches: list[tuple[Queries, Array]] = []
     for _ in range(n):
         queries = search.ask(ENDLESS)
-        told = totals(End(queries.end[0]), queries.q_base, queries.grasps)
-        search.tell(told)
-        batches.append((queries, told))
+        parts = [queries.take(queries.end == end) for end in End]
+        told = [totals(end, parts[end].q_base, parts[end].grasps) for end in End]
+        assert np.array_equal(queries.end, np.concatenate([p.end for p in parts]))
+        search.tell(np.concatenate(told))
+        batches += zip(parts, told, strict=True)
     return batches
 
 
 @pytest.fixture(scope="module")
 def batches() -> list[tuple[Queries, Array]]:
     """Two cycles: start bases, goal bases, grasps at the start, grasps at the goal."""
-    return generations(PAPER, 8)
+    return generations(PAPER, 4)
 
 
 def by_pair(batch: tuple[Queries, Array], n: int) -> tuple[Array, Array, Array]:
@@ -117,7 +119,7 @@ def test_a_grasp_that_works_at_one_end_has_fitness_one(a: float, b: float) -> No
 
 def test_a_population_of_odd_size_keeps_its_size() -> None:
     settings = replace(PAPER, bases=9, grasps=7, partners=3)
-    sizes = [len(told) for _, told in generations(settings, 12)]
+    sizes = [len(told) for _, told in generations(settings, 6)]
     assert sizes == [27, 27, 21, 21] * 3
 
 
