@@ -259,12 +259,12 @@ def _panel(axes: Axes, name: str, points: list[Point]) -> None:
         )
     axes.set_xlabel(_LABELS[name])
     axes.set_ylabel("CPU s")
+    axes.set_ylim(bottom=0.0)
     if name != "joints":
         axes.set_xscale("log")
     if name == "populations":
-        axes.set_yscale("log")
-    else:
-        axes.set_ylim(bottom=0.0)
+        axes.set_xticks(sizes, [f"{size:g}" for size in sizes])
+        axes.minorticks_off()
     axes.grid(alpha=0.3)
     axes.legend()
 
