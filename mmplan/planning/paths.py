@@ -12,10 +12,11 @@ from mmplan.planning.checking import PathChecker
 from mmplan.planning.joints import MovingJoints
 from mmplan.planning.metric import Metric
 from mmplan.planning.planners import require_planner
-from mmplan.planning.search import Search, search
+from mmplan.planning.proven_path import proven_path
+from mmplan.planning.search import Search
 from mmplan.planning.shortening import path_length, shorten
 from mmplan.planning.upright import UprightWorld
-from mmplan.planning.upright_search import UprightSearch, thinned
+from mmplan.planning.upright_search import thinned
 from mmplan.planning.world import PlanningWorld, contact_names
 from mmplan.problem import PlannerSettings
 from mmplan.shapes import Array, read_only
@@ -78,8 +79,8 @@ def plan_path(
     straight line, that is the path. The same generator state gives the same path.
 
     Where motions are to be checked continuously, the planner first looks at coarse
-    steps; only if the path that it finds then collides between these, it searches again
-    with every edge checked continuously.
+    steps. For edges of the path found that then collide between these it looks for ways
+    around with every edge checked continuously; where there is none, for the whole way.
 
     Raises:
         InputError: if there is no planner of that name, or it cannot plan for joints
@@ -104,7 +105,7 @@ def plan_path(
     seed = int(rng.integers(1, 2**31))
     if straight is not None:
         return _success(checker, metric, straight, q_goals)
-    found, waypoints = _proven(
+    found, waypoints = proven_path(
         checker, q_start, q_goals[usable], joints, settings, seed
     )
     if waypoints is None:
@@ -116,46 +117,6 @@ def plan_path(
     shortening = time.process_time() - begin
     result = _success(checker, metric, path, q_goals, found.iterations)
     return replace(result, first=read_only(waypoints), shortening=shortening)
-
-
-def _proven(
-    checker: PathChecker,
-    q_start: Array,
-    q_goals: Array,
-    joints: MovingJoints,
-    settings: PlannerSettings,
-    seed: int,
-) -> tuple[Search, Array | None]:
-    """A search and the path (n, nq) that it found, free as far as the checker tells."""
-    metric = Metric.of_joints(joints, checker.sweep.weights)
-    for looking in [checker.coarser(), checker] if checker.continuous else [checker]:
-        found = _search(looking, q_start, q_goals, joints, settings, seed)
-        if looking is not checker:
-            checker.states += looking.states
-            checker.edges += looking.edges
-        if found.waypoints is None:
-            return found, None
-        waypoints = metric.unwrapped(np.vstack([q_start, found.waypoints[1:]]))
-        waypoints = _with_exact_end(waypoints, metric, q_goals)
-        if looking is checker or checker.path_free(waypoints):
-            break
-    return found, waypoints
-
-
-def _search(
-    checker: PathChecker,
-    q_start: Array,
-    q_goals: Array,
-    joints: MovingJoints,
-    settings: PlannerSettings,
-    seed: int,
-) -> Search:
-    """A search by the planner wanted; where an object is kept upright, by our own."""
-    if isinstance(checker.world, UprightWorld):
-        rng = np.random.default_rng(seed)
-        own = UprightSearch(checker, checker.world.rule, joints, rng)
-        return own.run(q_start, q_goals, settings)
-    return search(checker, q_start, q_goals, joints, settings, seed)
 
 
 def _require_still(
@@ -192,13 +153,6 @@ def _straight_path(
         if checker.edge_free(q_start, q_goal):
             return np.vstack([q_start, q_goal])
     return None
-
-
-def _with_exact_end(path: Array, metric: Metric, q_goals: Array) -> Array:
-    """The path with the end asked for instead of what scaling made of it."""
-    q_goals = q_goals + metric.turns(q_goals, path[-1])
-    off = np.abs(q_goals - path[-1]).max(axis=1)
-    return np.vstack([path[:-1], q_goals[np.argmin(off)]])
 
 
 def _success(
