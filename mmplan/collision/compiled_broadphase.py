@@ -71,7 +71,7 @@ class CompiledBroadphase:
         self._static = _boxes(geometry, static, _PADDING)
         self._balls, self._cores = _balls(geometry, moving), _cores(geometry, static)
         self._surely = allowed_depth + _SURE
-        self._pairs = _table(moving, static, pairs)  # in the order of `pairs`
+        self._pairs = _table(moving, static, pairs)
         self._axes = _axes(model)
         self._own = body_levers(model, geometry, moving)
         self._levers = pair_levers(model, geometry, pairs)
@@ -106,8 +106,6 @@ class CompiledBroadphase:
         For whom one hit among the configurations (n, nq) is enough: `CERTAIN` is the
         only pair where something collides for sure.
         """
-        if len(q) == 1:
-            return iter(self._likeliest(q, 0))
         starts = range(0, len(q), _CHUNK)
         return chain.from_iterable(
             self._likeliest(q[start : start + _CHUNK], start) for start in starts
