@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -71,6 +72,7 @@ class RuledWorld(PlanningWorld, Protocol):
         """The rules that are broken at one configuration (nq,), in words."""
 
 
+@lru_cache(maxsize=16)  # it takes long to see what a world can do
 def moving_part(world: PlanningWorld) -> MovingWorld | None:
     """The world, or the one within that other rules are laid upon, if it can do so."""
     inner: object = world
