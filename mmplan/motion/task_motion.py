@@ -53,7 +53,7 @@ class _Ends(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class TaskMotion:
-    """Plans the motion of one task for one candidate after the other."""
+    """Plans the motion of one task for candidates, one by one or together."""
 
     problem: Problem
     task: Task
