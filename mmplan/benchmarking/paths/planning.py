@@ -29,10 +29,10 @@ class OwnPlanner:
         begin = time.process_time()
         compile_motions()
         PathChecker(arena.world, self.settings.resolution)
-        arena.world.any_collision(arena.q_start[None])
         still = np.zeros_like(arena.q_start)
         arena.world.steps_collide(arena.q_start, still, 1)
         arena.world.motion_collides(arena.q_start, still)
+        arena.world.any_collision(arena.q_start[None])  # compiled by now
         seconds = time.process_time() - begin
         return Prepared(lambda seed: _answer(arena, self.settings, seed), seconds)
 
