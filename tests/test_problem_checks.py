@@ -125,4 +125,4 @@ def test_shapes_that_cannot_be_made_are_all_told_and_nothing_else(
     )
     shelf, toy = messages(problem)
     assert shelf.startswith(f"obstacles.shelf: {broken}: this mesh cannot be read: ")
-    assert toy.startswith(f"objects.toy: {missing}: this mesh cannot be read: ")
+    assert toy.startswith(f"objects.toy: {missing}: cannot be read: ")
