@@ -131,8 +131,9 @@ class PlannerSettings:
     way that any point of the robot moves between two collision checks; a `continuous`
     motion check finds what touches between these as well.
     Paths keep `clearance` (m) from all that their ends are not nearer to already.
-    `shortcuts` is the number of attempts at shortening a path. `base_weight` is how
-    much more a way of the base counts in a path's length than the same way of the arm.
+    `shortcuts` is the number of attempts at shortening a path, and `shorten` (s) the
+    safety net for that. `base_weight` is how much more a way of the base counts in a
+    path's length than the same way of the arm.
     With `torque` motions keep within the limits of the arm's torques.
     """
 
@@ -144,6 +145,7 @@ class PlannerSettings:
     resolution: float = 0.01
     clearance: float = 0.002
     shortcuts: int = 100
+    shorten: float = 10.0
     base_weight: float = 1.0
     torque: bool = False
     range: float = 1.5

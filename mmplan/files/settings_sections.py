@@ -125,6 +125,8 @@ class PlannerSection(Section):
     """Distance that paths keep from all that their ends keep it from, m."""
     shortcuts: Annotated[int, Field(ge=0, le=10**6)] = PlannerSettings.shortcuts
     """Attempts at shortening a path."""
+    shorten: Positive = PlannerSettings.shorten
+    """Safety net for shortening a path, s; see time_limit."""
     base_weight: Annotated[float, Field(ge=0.01, le=100)] = PlannerSettings.base_weight
     """How much more a way of the base counts than the same way of the arm."""
     torque: bool = PlannerSettings.torque

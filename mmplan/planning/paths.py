@@ -113,7 +113,9 @@ def plan_path(
     begin = time.process_time()
     if isinstance(world, UprightWorld):
         waypoints = thinned(waypoints, checker)
-    path = shorten(waypoints, checker, joints, settings.shortcuts, rng)
+    path = shorten(
+        waypoints, checker, joints, settings.shortcuts, rng, settings.shorten
+    )
     shortening = time.process_time() - begin
     result = _success(checker, metric, path, q_goals, found.iterations)
     return replace(result, first=read_only(waypoints), shortening=shortening)

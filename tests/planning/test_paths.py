@@ -232,3 +232,12 @@ def test_a_detour_in_the_open_becomes_a_straight_line(stick_among, stick_joints)
     checker = PathChecker(stick_among(), RESOLUTION)
     short = shorten(path, checker, stick_joints, 10, np.random.default_rng(0))
     assert np.array_equal(short, path[[0, -1]])
+
+
+def test_no_shortcut_is_tried_when_the_time_for_it_is_over(gap, stick_joints):
+    rng = np.random.default_rng(0)
+    path = plan_path(gap, LEFT, RIGHT, stick_joints, SETTINGS, rng).first
+    checker = PathChecker(gap, RESOLUTION)
+    none = shorten(path, checker, stick_joints, 0, np.random.default_rng(1))
+    late = shorten(path, checker, stick_joints, 10**9, np.random.default_rng(1), 0.0)
+    assert np.array_equal(none, late)
