@@ -8,6 +8,8 @@ from pathlib import Path
 
 from mmplan.problem import Obstacle, Problem
 from mmplan.scene_file import load_problem
+from mmplan.shapes import Box
+from tests.honest import shift
 
 SCENE = Path(__file__).parent / "scenes" / "tabletop.yaml"
 
@@ -39,3 +41,17 @@ def cup_scene(folder: Path, **settings: str) -> Path:
     path = folder / "cup.yaml"
     path.write_text("\n".join(kept) + "\n")
     return path
+
+
+def walled_in() -> Problem:
+    """The robot at the outset between four walls without a door."""
+    x = y = -1.3
+    problem = cup_problem(
+        Obstacle("north", Box((1.4, 0.02, 2.0)), shift(x, y + 0.7, 1.0)),
+        Obstacle("south", Box((1.4, 0.02, 2.0)), shift(x, y - 0.7, 1.0)),
+        Obstacle("east", Box((0.02, 1.4, 2.0)), shift(x + 0.7, y, 1.0)),
+        Obstacle("west", Box((0.02, 1.4, 2.0)), shift(x - 0.7, y, 1.0)),
+    )
+    q_start = problem.q_start.copy()
+    q_start[problem.robot.base.indices] = x, y
+    return replace(problem, q_start=q_start)

@@ -16,11 +16,10 @@ from mmplan.motion import Blocked, TaskMotion, task_motion
 from mmplan.motion.ways import Way, WayFinder
 from mmplan.optimizers import Optimization
 from mmplan.planning import PlanningWorld
-from mmplan.problem import Obstacle, PlannerSettings, Problem
+from mmplan.problem import PlannerSettings, Problem
 from mmplan.scoring import End, ScoreFunction
-from mmplan.shapes import Array, Box
-from tests.honest import shift
-from tests.tabletop import cup_problem
+from mmplan.shapes import Array
+from tests.tabletop import cup_problem, walled_in
 
 GOALS = 6
 
@@ -114,18 +113,8 @@ def test_a_plan_with_goals_together_is_proven_and_repeats() -> None:
 
 
 def test_all_that_cannot_be_reached_are_accounted_for() -> None:
-    x = y = -1.3
-    walls = (
-        Obstacle("north", Box((1.4, 0.02, 2.0)), shift(x, y + 0.7, 1.0)),
-        Obstacle("south", Box((1.4, 0.02, 2.0)), shift(x, y - 0.7, 1.0)),
-        Obstacle("east", Box((0.02, 1.4, 2.0)), shift(x + 0.7, y, 1.0)),
-        Obstacle("west", Box((0.02, 1.4, 2.0)), shift(x - 0.7, y, 1.0)),
-    )
-    problem = with_goals(cup_problem(*walls))
-    q_start = problem.q_start.copy()
-    q_start[problem.robot.base.indices] = x, y
     with pytest.raises(NoPlanError) as caught:
-        mmplan.solve(replace(problem, q_start=q_start), seed=0)
+        mmplan.solve(with_goals(walled_in()), seed=0)
     assert caught.value.report is not None
     assert caught.value.report.reason == (
         "all 4 candidates failed on the way: transit (4)"

@@ -16,12 +16,12 @@ from mmplan import pipeline
 from mmplan.exceptions import NoPlanError, VerificationError
 from mmplan.grasps import Axis
 from mmplan.plan import Plan
-from mmplan.problem import Object, Obstacle, OptimizerSettings, PlannerSettings, Problem
+from mmplan.problem import Object, OptimizerSettings, PlannerSettings, Problem
 from mmplan.shapes import Array, Box
 from mmplan.verification import examine
 from mmplan.verification_report import Fault, VerificationReport
 from tests.honest import shift
-from tests.tabletop import cup_problem, two_tasks
+from tests.tabletop import cup_problem, two_tasks, walled_in
 
 SEGMENTS = [
     "transit",
@@ -188,18 +188,8 @@ def test_the_reason_is_which_end_no_grasp_serves(
 
 
 def test_a_robot_that_cannot_get_out_is_told_as_such() -> None:
-    x = y = -1.3
-    walls = (
-        Obstacle("north", Box((1.4, 0.02, 2.0)), shift(x, y + 0.7, 1.0)),
-        Obstacle("south", Box((1.4, 0.02, 2.0)), shift(x, y - 0.7, 1.0)),
-        Obstacle("east", Box((0.02, 1.4, 2.0)), shift(x + 0.7, y, 1.0)),
-        Obstacle("west", Box((0.02, 1.4, 2.0)), shift(x - 0.7, y, 1.0)),
-    )
-    problem = cup_problem(*walls)
-    q_start = problem.q_start.copy()
-    q_start[problem.robot.base.indices] = x, y
     planner = PlannerSettings(iterations=60, candidates=2)
-    error = failure(replace(problem, q_start=q_start, planner=planner))
+    error = failure(replace(walled_in(), planner=planner))
     assert error.report is not None
     assert error.report.reason == "all 2 candidates failed on the way: transit (2)"
     for attempt in error.report.attempts:

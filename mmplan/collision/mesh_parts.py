@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from mmplan.collision.mesh_files import TriangleMesh
+from mmplan.collision.pairs import Indices
 from mmplan.shapes import Array
-
-Indices = npt.NDArray[np.int64]
 
 # Triangles at smaller angles lie on each other, rad.
 _SAME = 1e-6

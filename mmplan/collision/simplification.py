@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from mmplan.collision.mesh_files import TriangleMesh
+from mmplan.collision.pairs import Indices
 from mmplan.shapes import Array
-
-Indices: TypeAlias = npt.NDArray[np.int64]
 
 # CoACD takes half a minute for so many triangles of a simple shape.
 MOST_TRIANGLES = 10_000

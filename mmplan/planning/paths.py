@@ -11,8 +11,8 @@ import numpy as np
 from mmplan.planning.checking import PathChecker
 from mmplan.planning.joints import MovingJoints
 from mmplan.planning.metric import Metric
+from mmplan.planning.path_finder import PathFinder
 from mmplan.planning.planners import require_planner
-from mmplan.planning.proven_path import proven_path
 from mmplan.planning.search import Search
 from mmplan.planning.shortening import path_length, shorten
 from mmplan.planning.upright import UprightWorld
@@ -105,9 +105,8 @@ def plan_path(
     seed = int(rng.integers(1, 2**31))
     if straight is not None:
         return _success(checker, metric, straight, q_goals)
-    found, waypoints = proven_path(
-        checker, q_start, q_goals[usable], joints, settings, seed
-    )
+    finder = PathFinder(joints, settings, seed)
+    found, waypoints = finder.find(checker, q_start, q_goals[usable])
     if waypoints is None:
         return _exhausted(checker, found, settings)
     begin = time.process_time()

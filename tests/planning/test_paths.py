@@ -156,7 +156,7 @@ def test_the_time_limit_is_a_safety_net(stick_among, stick_joints):
 
 def test_a_planner_that_gives_up_says_so(monkeypatch, gap, stick_joints):
     nothing = Search(None, 5, False, gap=1.5, start_tree=3, goal_tree=1)
-    monkeypatch.setattr("mmplan.planning.proven_path.search", lambda *_: nothing)
+    monkeypatch.setattr("mmplan.planning.path_finder.search", lambda *_: nothing)
     rng = np.random.default_rng(0)
     result = plan_path(gap, LEFT, RIGHT, stick_joints, SETTINGS, rng)
     assert result.outcome is PathOutcome.GAVE_UP

@@ -11,13 +11,15 @@ import pytest
 from mmplan.collision import CollisionWorld, compile_motions
 from mmplan.planning import (
     MovingJoints,
+    PathChecker,
     PathOutcome,
     PathResult,
+    path_finder,
     plan_path,
-    proven_path,
 )
+from mmplan.planning.search import Search
 from mmplan.problem import Obstacle, PlannerSettings
-from mmplan.shapes import Box
+from mmplan.shapes import Array, Box
 from tests.collision.worlds import among, q_tucked
 from tests.honest import shift
 
@@ -62,13 +64,15 @@ def path_through(world: CollisionWorld, seed: int, **settings: int) -> PathResul
 def searches(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """The iterations that each search was allowed."""
     allowed: list[int] = []
-    found = proven_path._found
+    search = path_finder.PathFinder._search
 
-    def counted(*arguments: object) -> object:
-        allowed.append(arguments[4].iterations)  # type: ignore[attr-defined]
-        return found(*arguments)  # type: ignore[arg-type]
+    def counted(
+        self: path_finder.PathFinder, checker: PathChecker, *ends: Array
+    ) -> Search:
+        allowed.append(self.settings.iterations)
+        return search(self, checker, *ends)
 
-    monkeypatch.setattr(proven_path, "_found", counted)
+    monkeypatch.setattr(path_finder.PathFinder, "_search", counted)
     return allowed
 
 
@@ -81,13 +85,13 @@ def test_nothing_is_jumped_and_ways_are_mended(searches: list[int]) -> None:
         for q, q_next in pairwise(result.path):
             assert not world.steps_collide(q, q_next - q, 300)
             assert not world.motion_collides(q, q_next - q)
-    assert proven_path._MENDING in searches
+    assert path_finder._MENDING in searches
 
 
 def test_where_mending_fails_all_is_searched_anew(
     searches: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(proven_path, "_MENDING", 1)
+    monkeypatch.setattr(path_finder, "_MENDING", 1)
     world = wall(door=1.0)
     whole = [SETTINGS.iterations] * 2
     again = 0
