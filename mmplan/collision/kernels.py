@@ -205,20 +205,16 @@ def search_motion(
             e = lists[place]
             i, j = pairs[e, 1], pairs[e, 2]
             if placed[i] < node:
-                placed[i] = node
-                _place_box(T, joint[i], moving, boxes, i)
-                moved = half * far[i]
-                pace[i] = _reach_out(
-                    T, joint[i], boxes, i, moved, tree, axes, own, span, arms
+                placed[i], moved = node, half * far[i]
+                pace[i] = _place_mover(
+                    T, joint, moving, boxes, i, moved, tree, axes, own, span, arms
                 )
             speed = pace[i]
             if pairs[e, 3] != STATIC:
                 if placed[j] < node:
-                    placed[j] = node
-                    _place_box(T, joint[j], moving, boxes, j)
-                    moved = half * far[j]
-                    pace[j] = _reach_out(
-                        T, joint[j], boxes, j, moved, tree, axes, own, span, arms
+                    placed[j], moved = node, half * far[j]
+                    pace[j] = _place_mover(
+                        T, joint, moving, boxes, j, moved, tree, axes, own, span, arms
                     )
                 speed = 0.0
                 for k in range(len(q)):
@@ -314,9 +310,10 @@ def _place_box(T: Array, joint: int, moving: Array, boxes: Array, i: int) -> Non
 
 
 @njit(cache=True)
-def _reach_out(
+def _place_mover(
     T: Array,
-    joint: int,
+    joint: Indices,
+    moving: Array,
     boxes: Array,
     i: int,
     moved: float,
@@ -326,28 +323,30 @@ def _reach_out(
     span: Array,
     arms: Array,
 ) -> float:
-    """Bound how far joints carry body i, if its points move no farther than `moved`.
+    """Place box i and bound how far joints carry it, if no farther than `moved`.
 
     Sets row i of `arms` (m, nq), m/rad or m/m, and returns the sum with `span` (nq,).
     """
+    _place_box(T, joint[i], moving, boxes, i)
+    above = joint[i]
     total = 0.0
-    while joint > 0:
-        k = joint - 1
+    while above > 0:
+        k = above - 1
         place = tree[1, k]
         arm = own[i, place]
         if axes[k, 3] > 0.0:
-            x = boxes[i, 0, 3] - T[joint, 0, 3]
-            y = boxes[i, 1, 3] - T[joint, 1, 3]
-            z = boxes[i, 2, 3] - T[joint, 2, 3]
+            x = boxes[i, 0, 3] - T[above, 0, 3]
+            y = boxes[i, 1, 3] - T[above, 1, 3]
+            z = boxes[i, 2, 3] - T[above, 2, 3]
             along = 0.0
             for axis in range(3):
-                u = T[joint, 0, axis] * x + T[joint, 1, axis] * y
-                along += axes[k, axis] * (u + T[joint, 2, axis] * z)
+                u = T[above, 0, axis] * x + T[above, 1, axis] * y
+                along += axes[k, axis] * (u + T[above, 2, axis] * z)
             beside = max(0.0, x * x + y * y + z * z - along * along)
             arm = min(arm, np.sqrt(beside) + boxes[i, 3, 3] + moved)
         arms[i, place] = arm
         total += arm * span[place]
-        joint = tree[0, k]
+        above = tree[0, k]
     return total
 
 
