@@ -5,12 +5,14 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from mmplan.collision import CollisionWorld, compile_motions
 from mmplan.collision.checker import Checker
 from mmplan.collision.clear_cells import clear_cells
 from mmplan.collision.compiled_broadphase import CompiledBroadphase
+from mmplan.collision.pairs import CERTAIN
 from mmplan.problem import Obstacle
 from mmplan.robot_build import load_robot
 from mmplan.shapes import Array, Box
@@ -79,6 +81,32 @@ def test_continuous_is_stricter_than_many_steps(name: str, where: str) -> None:
         assert answers[0] or not touching
         free += not answers[0]
     assert 0 < free < EDGES
+
+
+@everywhere
+def test_no_pair_comes_nearer_faster_than_told(name: str, where: str) -> None:
+    """Distances change in a stretch by no more than its speed allows."""
+    checked, tightest = 0, np.inf
+    for checker in checkers(name, where):
+        for q, dq in zip(*edges(11), strict=True):
+            for pair, start, end, speed in checker._motions.on_the_way(q, dq)[:3]:
+                if pair == CERTAIN:
+                    continue
+                checked += 1
+                t = np.linspace(start, end, 6)
+                gaps = [distance(checker, q + share * dq, pair) for share in t]
+                spare = speed * np.diff(t) - np.abs(np.diff(gaps))
+                assert spare.min() >= -1e-6
+                tightest = min(tightest, (spare / (speed * np.diff(t) + 1e-9)).min())
+    assert checked > 20
+    assert tightest < 0.5  # the bound is of use
+
+
+def distance(checker: Checker, q: Array, pair: int) -> float:
+    """How far the bodies of a pair are apart at q (nq,), 0 where they overlap."""
+    checker._place(q)
+    found = pin.computeDistance(checker._geometry, checker._geometry_data, pair)
+    return max(0.0, float(found.min_distance))
 
 
 def test_continuous_is_no_stricter_than_it_must_be() -> None:
