@@ -127,13 +127,13 @@ class PlannerSettings:
     Planning is bounded by `iterations` (of the planner, for one path) and `candidates`
     (how many distinct goals of the optimizer are tried, `goals` of them in one search:
     the one that it reaches first comes first), so that one seed gives one plan;
-    `time_limit` (s, for one path) is the safety net. `resolution` (m) is the longest
-    way that any point of the robot moves between two collision checks; a `continuous`
-    motion check finds what touches between these as well.
+    `time_limit` (CPU s, for one path) is the safety net. `resolution` (m) is the
+    longest way that any point of the robot moves between two collision checks; a
+    `continuous` motion check finds what touches between these as well.
     Paths keep `clearance` (m) from all that their ends are not nearer to already.
-    `shortcuts` is the number of attempts at shortening a path, and `shorten` (s) the
-    safety net for that. `base_weight` is how much more a way of the base counts in a
-    path's length than the same way of the arm.
+    `shortcuts` is the number of attempts at shortening a path, and `shorten` (CPU s)
+    the safety net for that. `base_weight` is how much more a way of the base counts in
+    a path's length than the same way of the arm.
     With `torque` motions keep within the limits of the arm's torques.
     """
 

@@ -5,7 +5,7 @@ from mmplan.collision.assembly import Assembly, Body, TouchRules
 from mmplan.collision.bisection import coarse_to_fine
 from mmplan.collision.bounds import Bounds, local_bounds, moved_bounds
 from mmplan.collision.closing import Closings, HandCloser
-from mmplan.collision.compiling import compile_motions
+from mmplan.collision.compiling import compile_motions, planning_clock
 from mmplan.collision.distances import LinkDistances
 from mmplan.collision.hand_size import hand_size
 from mmplan.collision.hand_widths import hand_widths
@@ -52,6 +52,7 @@ __all__ = [
     "make_exact",
     "moved_bounds",
     "overlaps",
+    "planning_clock",
     "solids_of_obstacle",
     "supports",
 ]

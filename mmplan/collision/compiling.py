@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from functools import cache
 from itertools import count
 from typing import TYPE_CHECKING
@@ -14,6 +15,7 @@ _WORTHWHILE = 200
 
 _questions = count()
 _wanted: list[bool] = []
+_seconds_of_loading: list[float] = []
 
 
 def compile_motions() -> None:
@@ -31,12 +33,24 @@ def compiled_broadphase() -> type[CompiledBroadphase] | None:
     return _load()
 
 
+def planning_clock() -> float:
+    """CPU s that this thread has worked, but for loading and compiling numba's part.
+
+    For limits in seconds, which else would give other plans where the machine is busy
+    and where mmplan has just been installed.
+    """
+    return time.thread_time() - sum(_seconds_of_loading)
+
+
 @cache
 def _load() -> type[CompiledBroadphase] | None:
+    begin = time.thread_time()
     try:
         from mmplan.collision.compiled_broadphase import CompiledBroadphase
     except (ImportError, RuntimeError):
         # There is no numba, or none that goes with this numpy, or no folder in which
         # it could keep what it compiles. All works without, only slower.
         return None
+    finally:
+        _seconds_of_loading.append(time.thread_time() - begin)
     return CompiledBroadphase

@@ -33,7 +33,7 @@ Arguments that several functions share:
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+from numba import njit, types
 
 from mmplan.collision.pairs import CERTAIN, Flags, Indices
 from mmplan.shapes import Array
@@ -498,3 +498,31 @@ def _overlap(A: Array, a: int, B: Array, b: int, margin: float, room: Array) -> 
                 if away > reach + margin * sine:
                     return -1.0
     return least
+
+
+def _array(kind: types.Type, ndim: int, *, readonly: bool = False) -> types.Array:
+    return types.Array(kind, ndim, "C", readonly=readonly)
+
+
+def _compile() -> None:
+    """Compile what others call for the types that they use, or load it.
+
+    Otherwise that would be done, once for arrays that can be written to and once for
+    others, in the middle of the first search that gets here.
+    """
+    table, vector, poses = (_array(types.float64, ndim) for ndim in (2, 1, 3))
+    indices, index_table = (_array(types.int64, ndim) for ndim in (1, 2))
+    tree = (index_table, _array(types.float64, 4))
+    bodies = (indices, poses, poses, index_table, table, _array(types.bool_, 3))
+    room = (poses, poses, vector, index_table, table)
+    configurations = _array(types.float64, 2, readonly=True)
+    configuration = _array(types.float64, 1, readonly=True)
+    motion = (configuration, configuration, types.int64, types.float64)
+    levers = (table, table, table, indices)
+    find_suspects.compile((configurations, *tree, *bodies, *room))
+    find_suspects.disable_compile()
+    search_motion.compile((*motion, *tree, *levers, *bodies, *room))
+    search_motion.disable_compile()
+
+
+_compile()

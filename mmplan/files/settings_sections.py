@@ -118,7 +118,7 @@ class PlannerSection(Section):
     goals: Count = PlannerSettings.goals
     """How many of these are goals of one search; the first reached comes first."""
     time_limit: Positive = PlannerSettings.time_limit
-    """Safety net for one path, s; a plan that depends on it cannot be repeated."""
+    """Safety net for one path, CPU s; a plan that depends on it cannot be repeated."""
     resolution: Annotated[Positive, AfterValidator(_fine)] = PlannerSettings.resolution
     """Longest way of any point of the robot between two collision checks, m."""
     clearance: Annotated[float, Field(ge=0, le=1)] = PlannerSettings.clearance
@@ -126,7 +126,7 @@ class PlannerSection(Section):
     shortcuts: Annotated[int, Field(ge=0, le=10**6)] = PlannerSettings.shortcuts
     """Attempts at shortening a path."""
     shorten: Positive = PlannerSettings.shorten
-    """Safety net for shortening a path, s; see time_limit."""
+    """Safety net for shortening a path, CPU s; see time_limit."""
     base_weight: Annotated[float, Field(ge=0.01, le=100)] = PlannerSettings.base_weight
     """How much more a way of the base counts than the same way of the arm."""
     torque: bool = PlannerSettings.torque

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -13,6 +12,7 @@ from ompl import base as ob
 from ompl import geometric as og
 from ompl import util as ou
 
+from mmplan.collision import planning_clock
 from mmplan.planning.checking import PathChecker
 from mmplan.planning.joints import MovingJoints
 from mmplan.planning.metric import Metric
@@ -38,7 +38,7 @@ class Budget:
     ) -> None:
         """Allow the settings' iterations and, as a safety net, their time limit."""
         self._allowed = settings.iterations
-        self._deadline = time.monotonic() + settings.time_limit
+        self._deadline = planning_clock() + settings.time_limit
         self._problem = problem
         self.iterations = 0
         self.out_of_time = False
@@ -47,7 +47,7 @@ class Budget:
         """Whether the planner must stop."""
         if self.iterations >= self._allowed or self._problem.hasExactSolution():
             return True
-        self.out_of_time = time.monotonic() > self._deadline
+        self.out_of_time = planning_clock() > self._deadline
         self.iterations += not self.out_of_time
         return self.out_of_time
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 
+from mmplan.collision import planning_clock
 from mmplan.planning.checking import PathChecker
 from mmplan.planning.joints import MovingJoints
 from mmplan.planning.metric import Metric
@@ -29,15 +28,15 @@ def shorten(
     places, in turn of all joints and of one joint alone, the others going on as before
     (Geraerts and Overmars, "Creating high-quality paths for motion planning", 2007).
     Lengths are weighted by the joints' lever arms and costs. Joints that wrap may end
-    whole turns from where they did. No attempt is begun after `seconds` on the clock.
+    whole turns from where they did. No attempt is begun after `seconds` of CPU time.
     """
-    deadline = time.monotonic() + seconds
+    deadline = planning_clock() + seconds
     metric = Metric.of_joints(joints, checker.sweep.weights)
     path = drop_waypoints(path, checker, metric)
     moving = np.flatnonzero(np.ptp(path, axis=0))
     moving = np.intersect1d(moving, joints.indices)
     for attempt in range(attempts):
-        if len(path) == 2 or time.monotonic() > deadline:  # 2: straight already
+        if len(path) == 2 or planning_clock() > deadline:  # 2: straight already
             break
         joint = int(rng.choice(moving)) if attempt % 2 else None
         first, second = np.sort(rng.random(2))

@@ -9,12 +9,12 @@ straight edges would keep it.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
 
+from mmplan.collision import planning_clock
 from mmplan.planning.checking import PathChecker
 from mmplan.planning.joints import MovingJoints
 from mmplan.planning.metric import Metric
@@ -92,7 +92,7 @@ class UprightSearch:
         The time limit is one of CPU time: another path, or none, for the machine being
         busy would be a plan that cannot be repeated.
         """
-        deadline = time.thread_time() + settings.time_limit
+        deadline = planning_clock() + settings.time_limit
         trees = Tree(q_start[None]), Tree(q_goals)
         samples = self._samples(q_start)
         iterations, late, way = 0, False, None
@@ -103,7 +103,7 @@ class UprightSearch:
             if node is not None:
                 meeting = self._grow(other, one.q[node], np.inf, settings.range)
                 way = self._joined(trees, one, node, meeting)
-            late = time.thread_time() > deadline
+            late = planning_clock() > deadline
         q = trees[0].q
         gap = self.metric.distances(q[None], q_goals[:, None]).min()
         return Search(way, iterations, late, float(gap), trees[0].size, trees[1].size)
