@@ -12,8 +12,8 @@ import numpy.typing as npt
 from mmplan.optimizers.archive import Archive, Triple
 from mmplan.optimizers.bases import BasePlacements, OnePlacement, Placements
 from mmplan.optimizers.optimizer import Optimizer, Queries, SearchSpace
-from mmplan.optimizers.sharing import GoalProcess, goal_process
-from mmplan.scoring import End, Outcome, ScoreFunction
+from mmplan.processes import Copy, copied
+from mmplan.scoring import End, Outcome, ScoreFunction, Scores
 from mmplan.shapes import Array
 
 # Called with the evaluations done so far.
@@ -66,7 +66,7 @@ def optimize(
     asked: list[Queries] = []
     outcomes = np.zeros((len(End), len(Outcome)), np.int64)
     spent = 0
-    with goal_process(score, jobs) as helper:
+    with copied(score, jobs, "scores the goal") as helper:
         while spent < evaluations:
             queries = optimizer.ask(evaluations - spent)
             totals = _evaluate(score, queries, outcomes, helper)
@@ -93,25 +93,31 @@ def _evaluate(
     score: ScoreFunction,
     queries: Queries,
     outcomes: npt.NDArray[np.int64],
-    helper: GoalProcess | None,
+    helper: Copy[ScoreFunction] | None,
 ) -> Array:
     """The scores (n,) of what was asked for, counted by outcome."""
     totals = np.zeros(len(queries.end))
     rows = {end: np.flatnonzero(queries.end == end) for end in End}
     asked = {end: (queries.q_base[r], queries.grasps[r]) for end, r in rows.items()}
+    at_goal = None
     if helper is not None and len(rows[End.GOAL]):
-        helper.ask(*asked[End.GOAL])
+        at_goal = helper.ask(_scores_at_goal, *asked[End.GOAL])
     for end in End:
         if len(rows[end]) == 0:
             continue
-        if helper is not None and end == End.GOAL:
-            scores = helper.answer()
+        if at_goal is not None and end == End.GOAL:
+            scores = at_goal()
             score.remember(end, *asked[end], scores)
         else:
             scores = score(end, *asked[end])
         totals[rows[end]] = scores.total
         np.add.at(outcomes[end], scores.outcome, 1)
     return totals
+
+
+def _scores_at_goal(score: ScoreFunction, q_base: Array, grasps: Array) -> Scores:
+    """The scores of bases (n, b) and grasps (n, g) at the goal."""
+    return score(End.GOAL, q_base, grasps)
 
 
 def _rises(

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import multiprocessing
-import os
-import signal
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import mmplan
-from mmplan.exceptions import MmplanError
 from mmplan.optimizers import OPTIMIZERS, Optimization, optimize, search_space
-from mmplan.optimizers.sharing import goal_process
 from mmplan.pipeline import score_function
 from mmplan.problem import Problem, WeightedTerm
 from mmplan.scoring import End, ScoreFunction
@@ -78,25 +74,3 @@ def test_what_a_term_raises_comes_through() -> None:
     with pytest.raises(ZeroDivisionError, match="no such thing at the goal"):
         found(problem, "coevolution", 2)
     assert not multiprocessing.active_children()
-
-
-def test_a_process_that_is_killed_is_told() -> None:
-    score = score_function(cup_problem())
-    with goal_process(score, 2) as helper:
-        assert helper is not None
-        (child,) = multiprocessing.active_children()
-        assert child.pid is not None
-        os.kill(child.pid, signal.SIGKILL)
-        child.join()
-        with pytest.raises(MmplanError, match="was ended; try without --jobs"):
-            helper.ask(np.zeros((1, 3)), np.zeros((1, 2)))
-        with pytest.raises(MmplanError, match="was ended"):
-            helper.answer()
-
-
-def test_nothing_is_left_behind() -> None:
-    with goal_process(score_function(cup_problem()), 2):
-        assert len(multiprocessing.active_children()) == 1
-    assert not multiprocessing.active_children()
-    with goal_process(score_function(cup_problem()), 1) as helper:
-        assert helper is None
