@@ -46,7 +46,8 @@ def solve(
     """Find grasps, base placements and a verified, timed motion for all tasks.
 
     The same problem, seed and machine give the same plan, whatever the number of
-    `jobs`: with two, co-evolution scores both ends at the same time.
+    `jobs`: with two, both ends are scored and the ways to the object and to its goal
+    are looked for at the same time.
 
     Raises:
         NoPlanError: No plan was found; the error carries the account.
@@ -89,7 +90,7 @@ def _solve_task(
     """The verified plan of a problem with one task, the `number`th of the scene."""
     score = score_function(problem)
     found = _optimize(score, rng, report, jobs)
-    plan, attempts = plan_candidates(score, found, seed, rng, report)
+    plan, attempts = plan_candidates(score, found, seed, rng, report, jobs)
     if plan is not None:
         return plan
     account = failure_report(number, score, found, attempts)
@@ -109,6 +110,7 @@ def plan_candidates(
     seed: int,
     rng: np.random.Generator,
     report: Progress | None = None,
+    jobs: int = 1,
 ) -> tuple[Plan | None, tuple[Attempt, ...]]:
     """The verified plan of the best candidate that has one, and the failures before.
 
@@ -118,7 +120,7 @@ def plan_candidates(
     attempts: list[Attempt] = []
     for without_lines in (False, True):
         motion = TaskMotion(
-            score.problem, score.task, score.worlds[End.START], without_lines
+            score.problem, score.task, score.worlds[End.START], without_lines, jobs
         )
         plan = _first_plan(score, motion, found, seed, rng, attempts, report or _ignore)
         if plan is not None or not _lines_in_the_way(score.task, attempts):
