@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from multiprocessing.connection import Connection
-from typing import Any, Concatenate, Generic, ParamSpec, TypeAlias, TypeVar
+from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
 
 from mmplan.exceptions import MmplanError
 
@@ -20,20 +20,6 @@ R = TypeVar("R")
 
 # What a pipe raises whose other end is closed.
 _GONE = (EOFError, BrokenPipeError, ConnectionResetError)
-
-
-class Here(Generic[T]):
-    """Does with an object what it is asked to, in this process, once that is wanted."""
-
-    def __init__(self, subject: T) -> None:
-        """Work with an object itself."""
-        self._subject = subject
-
-    def ask(
-        self, do: Callable[Concatenate[T, P], R], *args: P.args, **named: P.kwargs
-    ) -> Callable[[], R]:
-        """The call of a function of the object, put off until its answer is wanted."""
-        return partial(do, self._subject, *args, **named)
 
 
 class Copy(Generic[T]):
@@ -73,9 +59,6 @@ class Copy(Generic[T]):
         if error is not None:
             raise error
         return answer
-
-
-Worker: TypeAlias = Here[T] | Copy[T]
 
 
 @contextmanager

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import pytest
 
 from mmplan.exceptions import InputError, MmplanError
-from mmplan.processes import Copy, Here, copied
+from mmplan.processes import Copy, copied
 
 pytestmark = pytest.mark.skipif(
     "fork" not in multiprocessing.get_all_start_methods(),
@@ -53,14 +53,6 @@ def test_answers_come_in_the_order_of_the_questions(copy: Copy[list[int]]) -> No
     answers = [copy.ask(extended, number) for number in (2, 3)]
     assert [answer() for answer in answers] == [[1, 2], [1, 2, 3]]
     assert copy.ask(process_of)() != os.getpid()
-
-
-def test_here_nothing_is_done_before_it_is_wanted() -> None:
-    numbers = [1]
-    answer = Here(numbers).ask(extended, 2)
-    assert numbers == [1]
-    assert answer() == [1, 2]
-    assert Here(numbers).ask(process_of)() == os.getpid()
 
 
 def test_what_is_raised_comes_through(copy: Copy[list[int]]) -> None:

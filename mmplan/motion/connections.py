@@ -12,9 +12,9 @@ from mmplan.collision import CollisionWorld
 from mmplan.ik.windings import windings
 from mmplan.motion.carrying import kept_upright
 from mmplan.motion.parts import Part
-from mmplan.motion.ways import WayFinder
+from mmplan.motion.ways import WayFinder, steering_of
 from mmplan.motion.zoned_world import with_zones
-from mmplan.planning import PlanningWorld, transit_joints
+from mmplan.planning import PathChecker, PlanningWorld, transit_joints
 from mmplan.planning.metric import Metric
 from mmplan.problem import Problem, Task
 from mmplan.shapes import Array
@@ -81,15 +81,21 @@ class Connector:
         return reached, part, [x.turned(turn) for x in ways[reached].parts]
 
     def likely_turn(self, way: Connection, q_start: Array) -> Array:
-        """The whole turns (nq,) of the goal that is nearest to q_start (nq,).
+        """The whole turns (nq,) with which a way from q_start (nq,) is likely to end.
 
-        Found or not, the way is most likely to arrive there.
+        Those of the nearest goal, or of the nearest that can be reached in a straight
+        line where there are several and the base need not be steered.
         """
+        checker = PathChecker(way.world, self.problem.planner.resolution)
         joints = transit_joints(self.problem)
-        metric = Metric.of_joints(joints, np.ones(len(q_start)))
-        nearest = int(np.argmin(metric.distances(way.q_goals, q_start)))
-        turn: Array = way.turns[nearest] + metric.turns(way.q_goals[nearest], q_start)
-        return turn
+        metric = Metric.of_joints(joints, checker.sweep.weights)
+        turns: Array = way.turns + metric.turns(way.q_goals, q_start)
+        q_goals = way.parts[0].path[0] + turns
+        order = np.argsort(metric.distances(q_goals, q_start), kind="stable").tolist()
+        if len(order) > 1 and steering_of(self.problem) is None:
+            straight = (i for i in order if checker.edge_free(q_start, q_goals[i]))
+            return np.array(turns[next(straight, order[0])])
+        return np.array(turns[order[0]])
 
     def _turns(self, parts: list[Part]) -> Array:
         """Whole turns of the arm's joints (m, nq) that keep all parts within limits."""

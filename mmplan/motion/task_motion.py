@@ -20,7 +20,8 @@ from mmplan.motion.ways import steering_of
 from mmplan.motion.zoned_world import are_alike
 from mmplan.plan import Segment
 from mmplan.problem import Problem, Task
-from mmplan.processes import Here, Worker, copied
+from mmplan.processes import Copy, copied
+from mmplan.shapes import Array
 
 
 class _Halves(NamedTuple):
@@ -29,7 +30,18 @@ class _Halves(NamedTuple):
     transit: Connection
     pick: list[Part]
     delivery: Delivery
-    deliverer: Worker[Delivery]
+    copy: Copy[Delivery] | None  # in another process, if there is one
+
+
+class _Ahead(NamedTuple):
+    """The second half from a configuration on, being planned by another process."""
+
+    q_lifted: Array  # (nq,)
+    answer: Callable[[], tuple[Segment, ...] | Blocked]
+
+    def begins_at(self, q: Array) -> bool:
+        """Whether it begins at a configuration (nq,), to the last bit."""
+        return bool(self.q_lifted.tobytes() == q.tobytes())
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +65,7 @@ class TaskMotion:
         delivery = self._delivery(candidate)
         with copied(delivery, self.jobs, "plans the transfer") as copy:
             try:
-                halves = self._halves(delivery, copy or Here(delivery))
+                halves = self._halves(delivery, copy)
             except BlockedError as error:
                 return error.blocked
             return self._next({0: halves}, rng)[0]
@@ -72,10 +84,9 @@ class TaskMotion:
             return
         ready: dict[int, _Halves] = {}
         for number, candidate in enumerate(candidates):
-            delivery = self._delivery(candidate)
             try:
-                ready[number] = self._halves(delivery, Here(delivery))
-            except BlockedError as error:
+                ready[number] = self._halves(self._delivery(candidate), None)
+            except BlockedError as error:  # noqa: PERF203 (each has its own)
                 yield number, error.blocked
         while ready:
             found = self._next(ready, rng)
@@ -99,14 +110,13 @@ class TaskMotion:
         """What comes of the candidate reached first, or of all that are not reached.
 
         Either way has random numbers of its own, so that they can be looked for at the
-        same time. The second starts where the first is likely to end; if it ends
-        elsewhere, on another winding of the arm, it is looked for anew.
+        same time. The second begins ahead where the first is likely to end; if that
+        ends elsewhere, on another winding of the arm, the second is looked for anew.
         """
         for_transit, for_transfer = rng.spawn(2)
         sharing = self._sharing({k: halves.transit for k, halves in ready.items()})
         first = next(iter(sharing))
-        likely = self._likely_lift(ready[first])
-        delivered = _ask(ready[first].deliverer, likely, for_transfer)
+        ahead = self._ahead(ready[first], for_transfer)
         try:
             number, transit, pick = self._connector.connect(
                 "transit", self.world, self.problem.q_start, sharing, for_transit
@@ -117,10 +127,22 @@ class TaskMotion:
             fetched = self._timing.segments([transit, *pick])
         except BlockedError as error:
             return {number: error.blocked}
-        if number != first or not _end_alike(pick[-1], likely):
-            delivered = _ask(Here(ready[number].delivery), pick[-1], for_transfer)
-        rest = delivered()
+        q_lifted, lifted = pick[-1].path[-1], pick[-1].moves
+        if ahead is not None and number == first and ahead.begins_at(q_lifted):
+            rest = ahead.answer()
+        else:
+            rest = ready[number].delivery.segments(q_lifted, lifted, for_transfer)
         return {number: rest if isinstance(rest, Blocked) else fetched + rest}
+
+    def _ahead(self, halves: _Halves, rng: np.random.Generator) -> _Ahead | None:
+        """The second half from where the first is likely to end, in another process."""
+        if halves.copy is None:
+            return None
+        turn = self._connector.likely_turn(halves.transit, self.problem.q_start)
+        lift = halves.pick[-1].turned(turn)
+        q_lifted = lift.path[-1]
+        answer = halves.copy.ask(Delivery.segments, q_lifted, lift.moves, rng)
+        return _Ahead(q_lifted, answer)
 
     def _sharing(self, ways: dict[int, Connection]) -> dict[int, Connection]:
         """The first way and those that one search can look for together with it."""
@@ -130,26 +152,23 @@ class TaskMotion:
         world = ways[first].world
         return {k: way for k, way in ways.items() if are_alike(way.world, world)}
 
-    def _likely_lift(self, halves: _Halves) -> Part:
-        """The lift where the transit is likely to arrive."""
-        turn = self._connector.likely_turn(halves.transit, self.problem.q_start)
-        return halves.pick[-1].turned(turn)
-
-    def _halves(self, delivery: Delivery, deliverer: Worker[Delivery]) -> _Halves:
+    def _halves(self, delivery: Delivery, copy: Copy[Delivery] | None) -> _Halves:
         """The short motions, planned first as they fail soonest.
 
         Raises:
             BlockedError: One of them is not free, or the arm is too weak.
         """
-        place = deliverer.ask(Delivery.blocked_place)
+        blocked_place = delivery.blocked_place
+        if copy is not None:
+            blocked_place = copy.ask(Delivery.blocked_place)
         pick = self._short.pick(delivery.candidate, delivery.carrying)
         self._timing.require_strength(pick[-1])
-        blocked = place()
+        blocked = blocked_place()
         if blocked is not None:
             raise BlockedError(blocked.segment, blocked.message)
         q_start = self.problem.q_start
         transit = self._connector.connection(self.world, q_start, pick)
-        return _Halves(transit, pick, delivery, deliverer)
+        return _Halves(transit, pick, delivery, copy)
 
     def _delivery(self, candidate: Candidate) -> Delivery:
         carrying = self._carrying(candidate)
@@ -171,15 +190,3 @@ class TaskMotion:
     @cached_property
     def _timing(self) -> Timing:
         return Timing(self.problem, self.task, self.world)
-
-
-def _ask(
-    deliverer: Worker[Delivery], lift: Part, rng: np.random.Generator
-) -> Callable[[], tuple[Segment, ...] | Blocked]:
-    """Have the object delivered from where a lift ends."""
-    return deliverer.ask(Delivery.segments, lift.path[-1], lift.moves, rng)
-
-
-def _end_alike(one: Part, other: Part) -> bool:
-    """Whether two parts end at the same configuration, to the last bit."""
-    return bool(one.path[-1].tobytes() == other.path[-1].tobytes())
