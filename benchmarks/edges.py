@@ -45,14 +45,14 @@ class Recorder:
         def check_motion(asked: Any, start: ob.State, end: ob.State) -> bool:
             if self.motion_checker in (None, asked):  # of the first search alone
                 self.motion_checker = asked
-                n = asked._states._size
+                n = asked.answers.states._size
                 self.motions.append((start[0:n], end[0:n]))
             return check(asked, start, end)
 
         def is_valid(asked: Any, q: ob.State) -> bool:
             if self.state_checker in (None, asked):
                 self.state_checker = asked
-                self.states.append(q[0 : asked._states._size])
+                self.states.append(q[0 : asked.answers.states._size])
             return valid(asked, q)
 
         motion.checkMotion, state.isValid = check_motion, is_valid  # type: ignore[method-assign, assignment]
@@ -100,8 +100,8 @@ def recorded(arena: Arena, seed: int) -> Recorder:
 
 def edge_layers(arena: Arena, asked: Recorder) -> list[tuple[str, float]]:
     """Seconds a whole edge by layers, each within the one before."""
-    checker: PathChecker = asked.motion_checker._checker
-    states = asked.motion_checker._states
+    checker: PathChecker = asked.motion_checker.answers.checker
+    states = asked.motion_checker.answers.states
     pairs = [(_filled(a), _filled(b)) for a, b in asked.motions]
     ends = [(states.configuration(a), states.configuration(b)) for a, b in pairs]
     moves = [(q, q_next - q) for q, q_next in ends]
@@ -119,8 +119,8 @@ def edge_layers(arena: Arena, asked: Recorder) -> list[tuple[str, float]]:
 
 def state_layers(arena: Arena, asked: Recorder) -> list[tuple[str, float]]:
     """The same for single states."""
-    checker: PathChecker = asked.state_checker._checker
-    states = asked.state_checker._states
+    checker: PathChecker = asked.state_checker.answers.checker
+    states = asked.state_checker.answers.states
     asked_states = [(_filled(values),) for values in asked.states]
     single = [(states.configuration(s)[None],) for (s,) in asked_states]
     motions: Any = arena.world._checker._motions

@@ -11,6 +11,7 @@ from mmplan.collision.hand_size import hand_size
 from mmplan.collision.hand_widths import hand_widths
 from mmplan.collision.inertia import inertia_of
 from mmplan.collision.levers import body_corners, joint_levers
+from mmplan.collision.planner_space import ROUNDING, PlannerSpace
 from mmplan.collision.regions import depth_in_region
 from mmplan.collision.requests import make_exact
 from mmplan.collision.scenery import Scenery
@@ -26,6 +27,7 @@ from mmplan.collision.world import (
 
 __all__ = [
     "CONTACT_ZONE",
+    "ROUNDING",
     "TOUCH_TOLERANCE",
     "Assembly",
     "Body",
@@ -36,6 +38,7 @@ __all__ = [
     "HandCloser",
     "LinkBounds",
     "LinkDistances",
+    "PlannerSpace",
     "Scenery",
     "TouchRules",
     "antipodal_poses",

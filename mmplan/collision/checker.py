@@ -14,12 +14,14 @@ from mmplan.collision.broadphase import Broadphase
 from mmplan.collision.clear_cells import clear_cells, clear_cells_made
 from mmplan.collision.compiling import compiled_broadphase
 from mmplan.collision.pairs import CERTAIN, Stretch, Suspects
+from mmplan.collision.planner_space import PlannerSpace
 from mmplan.collision.requests import PROVABLE, make_exact
 from mmplan.robot import Robot
 from mmplan.shapes import Array
 
 if TYPE_CHECKING:
     from mmplan.collision.compiled_broadphase import CompiledBroadphase
+    from mmplan.collision.compiled_space import CompiledSpace
 
 # A pair of the robot's own bodies that was apart so often gets a table, see
 # `clear_cells`.
@@ -75,6 +77,10 @@ class Checker:
             self._compiled = kind(*self._bounded)
             self._learn_what_is_known(self._compiled)
         return self._compiled
+
+    def in_space(self, space: PlannerSpace) -> CompiledSpace | None:
+        """Compiled answers to questions in a planner's coordinates, where there are."""
+        return None if self._compiled is None else self._compiled.in_space(space)
 
     def _learn_what_is_known(self, motions: CompiledBroadphase) -> None:
         made = clear_cells_made(self._robot)

@@ -7,9 +7,8 @@ batches of configurations are as quick there. The answers are the same.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import chain
-from typing import TypeAlias
 
 import numpy as np
 import pinocchio as pin
@@ -18,15 +17,16 @@ from mmplan.collision import kernels
 from mmplan.collision.assembly import Body
 from mmplan.collision.bounds import Bounds, local_bounds
 from mmplan.collision.clear_cells import ClearCells
+from mmplan.collision.compiled_space import CompiledSpace
 from mmplan.collision.cores import BALLS, core_of
 from mmplan.collision.levers import body_levers, pair_levers
 from mmplan.collision.pairs import (
     CERTAIN,
-    Flags,
     Indices,
     Stretch,
     distance_to_keep,
 )
+from mmplan.collision.planner_space import PlannerSpace
 from mmplan.collision.requests import PROVABLE
 from mmplan.kinematics import ForwardKinematics, motion_axes
 from mmplan.shapes import Array
@@ -39,10 +39,6 @@ _CHUNK = 256
 _SMALLEST = 0.002
 # Overlaps deeper than allowed by this are deep enough not to ask coal, m.
 _SURE = 1e-4
-
-_Bodies: TypeAlias = tuple[
-    Indices, Array, Array, Indices, Array, Flags, Array, Array, Array
-]
 
 
 class CompiledBroadphase:
@@ -60,52 +56,50 @@ class CompiledBroadphase:
 
         Pairs may overlap by `allowed_depth` (p,), m; below 0 it is a distance to keep.
         """
-        kinematics = ForwardKinematics(model)
-        self._tree, self._basis = kinematics.tree, kinematics.basis
         paired = sorted(set(pairs.ravel().tolist()))
         moving = [i for i in paired if bodies[i].joint != 0]
         static = [i for i in paired if bodies[i].joint == 0]
-        self._joint = np.array([bodies[i].joint for i in moving], dtype=np.int64)
         padding = _PADDING + distance_to_keep(allowed_depth)
-        self._moving = _boxes(geometry, moving, padding)
-        self._static = _boxes(geometry, static, _PADDING)
-        self._balls, self._cores = _balls(geometry, moving), _cores(geometry, static)
-        self._surely = allowed_depth + _SURE
-        self._pairs = _table(moving, static, pairs)
-        self._axes = _axes(model)
-        self._own = body_levers(model, geometry, moving)
-        self._levers = pair_levers(model, geometry, pairs)
-        self._cells = np.empty((0, 6))
-        self._clear = np.empty((0, 1, 1), dtype=np.bool_)
-        self._lists = np.empty(len(pairs) * (kernels.HALVINGS + 2), dtype=np.int64)
-        self._found = np.empty((1024, 3), dtype=np.int64)
-        self._depth = np.empty((1024, 2))
-
-    @property
-    def _bodies(self) -> _Bodies:
-        """Arguments that all kernels share."""
-        return (
-            self._joint,
-            self._moving,
-            self._static,
-            self._pairs,
-            self._cells,
-            self._clear,
-            self._balls,
-            self._cores,
-            self._surely,
+        joints = model.njoints - 1
+        sizes = kernels.Sizes(
+            joints, model.nq, len(moving), len(static), len(pairs), BALLS
         )
+        numbers, integers = kernels.needed(sizes)
+        self._numbers, self._integers = np.zeros(numbers), np.zeros(integers, np.int64)
+        self._integers[: len(sizes)] = sizes
+        self._tables = kernels.tables(self._numbers, self._integers)
+        kinematics = ForwardKinematics(model)
+        known = self._tables
+        known.basis[:], known.tree[:] = kinematics.basis, kinematics.tree
+        known.axes[:] = _axes(model)
+        known.moving[:] = _boxes(geometry, moving, padding)
+        known.static[:] = _boxes(geometry, static, _PADDING)
+        known.upright[:] = _upright(known.static)
+        known.balls[:] = _balls(geometry, moving)
+        known.cores[:] = _cores(geometry, static)
+        known.surely[:] = allowed_depth + _SURE
+        known.own[:] = body_levers(model, geometry, moving)
+        known.levers[:] = pair_levers(model, geometry, pairs)
+        known.joint[:] = [bodies[i].joint for i in moving]
+        known.pairs[:] = _table(moving, static, pairs)
+        known.T[0] = np.eye(3, 4)
+        self._clear = np.empty((0, 1, 1), dtype=np.bool_)
+        self._make_room(1024)
 
-    @property
-    def _room(self) -> tuple[Indices, Array]:
-        return self._found, self._depth
+    def _make_room(self, finds: int) -> None:
+        """Room for so many finds, with which what kernels are given begins anew."""
+        found = np.empty((finds, 3), dtype=np.int64)
+        depth = np.empty((finds, 2))
+        self.known = (self._numbers, self._integers, self._clear, found, depth)
 
-    def likeliest(self, q: Array) -> Iterator[tuple[int, int]]:
+    def likeliest(self, q: Array) -> Iterable[tuple[int, int]]:
         """Configuration and pair of each that may touch, likely ones first.
 
         For whom one hit among the configurations (n, nq) is enough: `CERTAIN` is the
         only pair where something collides for sure.
         """
+        if len(q) <= _CHUNK:
+            return self._likeliest(q, 0)
         starts = range(0, len(q), _CHUNK)
         return chain.from_iterable(
             self._likeliest(q[start : start + _CHUNK], start) for start in starts
@@ -128,46 +122,39 @@ class CompiledBroadphase:
         count = self._follow(q, dq, 0)
         if count == CERTAIN:
             return [Stretch(CERTAIN, 0.0, 1.0, 0.0)]
-        found = self._found[:count].tolist()
-        speeds = self._depth[:count, 1].tolist()
+        found, depth = self.known[-2:]
+        speeds = depth[:count, 1].tolist()
         return [
             Stretch(pair, first / kernels.PARTS, last / kernels.PARTS, speed)
-            for (pair, first, last), speed in zip(found, speeds, strict=True)
+            for (pair, first, last), speed in zip(
+                found[:count].tolist(), speeds, strict=True
+            )
         ]
+
+    def in_space(self, space: PlannerSpace) -> CompiledSpace:
+        """The same for questions in a planner's coordinates."""
+        return CompiledSpace(self, space)
 
     def learn(self, pair: int, known: ClearCells) -> None:
         """Leave a pair of moving bodies out wherever it is known to be apart."""
-        count = len(self._cells)
-        self._cells = np.vstack([self._cells, known.cells])
+        count = len(self._clear)
+        self._tables.cells[count] = known.cells
         clear = self._clear if count else np.empty((0, *known.clear.shape), np.bool_)
         self._clear = np.concatenate([clear, known.clear[None]])
-        self._pairs[self._pairs[:, 0] == pair, 3] = count
+        pairs = self._tables.pairs
+        pairs[pairs[:, 0] == pair, 3] = count
+        self._make_room(len(self.known[-1]))
 
     def _likeliest(self, q: Array, first: int) -> list[tuple[int, int]]:
         """The same as `likeliest` for a few configurations, the first of which is."""
-        count = kernels.find_suspects(
-            q, self._tree, self._basis, *self._bodies, *self._room
-        )
+        count = kernels.find_suspects(q, *self.known)
         if not self._had_room(count):
             return self._likeliest(q, first)
         return [(row + first, pair) for row, pair, _ in self._deepest_first(count)]
 
     def _follow(self, q: Array, dq: Array, steps: int) -> int:
         """How much `kernels.search_motion` finds and leaves in the room for it."""
-        count = kernels.search_motion(
-            q,
-            dq,
-            steps,
-            _SMALLEST,
-            self._tree,
-            self._basis,
-            self._axes,
-            self._own,
-            self._levers,
-            self._lists,
-            *self._bodies,
-            *self._room,
-        )
+        count: int = kernels.search_motion(q, dq, steps, _SMALLEST, *self.known)
         if not self._had_room(count):
             return self._follow(q, dq, steps)
         return count
@@ -176,18 +163,20 @@ class CompiledBroadphase:
         """So many finds as lists, those whose boxes overlap the most first."""
         if count == CERTAIN:
             return [[CERTAIN] * 3]
-        found = self._found[:count]
+        if count == 0:
+            return []
+        found, depth = self.known[-2:]
+        found = found[:count]
         if count > 1:
-            found = found[self._depth[:count, 0].argsort()[::-1]]
+            found = found[depth[:count, 0].argsort()[::-1]]
         finds: list[list[int]] = found.tolist()
         return finds
 
     def _had_room(self, count: int) -> bool:
         """Whether that many finds fitted in; if not, there is room now."""
-        if count <= len(self._depth):
+        if count <= len(self.known[-1]):
             return True
-        self._found = np.empty((2 * count, 3), dtype=np.int64)
-        self._depth = np.empty((2 * count, 2))
+        self._make_room(2 * count)
         return False
 
 
@@ -195,6 +184,12 @@ def _axes(model: pin.Model) -> Array:
     """The axis of each joint in its frame, and 1 if it turns, else 0, (joints, 4)."""
     angular = motion_axes(model)[1:, 3:]
     return np.column_stack([angular, np.any(angular != 0.0, axis=1)])
+
+
+def _upright(boxes: Array) -> Array:
+    """The corners of the upright boxes about boxes (n, 4, 4), (n, 6)."""
+    reach = (np.abs(boxes[:, :3, :3]) @ boxes[:, 3, :3, None])[..., 0]
+    return np.hstack([boxes[:, :3, 3] - reach, boxes[:, :3, 3] + reach])
 
 
 def _boxes(geometry: pin.GeometryModel, indices: list[int], padding: float) -> Array:

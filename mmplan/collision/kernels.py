@@ -11,20 +11,10 @@ them.
 
 Arguments that several functions share:
 
-    tree: Parent and place in q of each joint, (2, joints).
-    basis: Poses of joints in their parents' frames, (joints, 4, 3, 4), for each the
-        factors of 1, sin q, cos q and q.
-    joint: The joint of each moving body, (m,).
-    moving: The boxes of these in the frames of their joints, (m, 4, 4).
-    static: The boxes of the bodies that stand still, in the world, (s, 4, 4).
-    pairs: For each pair its number, its moving body, the other body, and what the
-        latter is: `STATIC`, or moving too: `MOVING`, or the table of clear cells that
-        holds for both, (p, 4).
-    cells, clear: Tables of clear cells, (k, 6) and (k, c, c); see `clear_cells`.
-    balls: Centres and radii of balls within the moving bodies, in the frames of their
-        boxes, (m, b, 4).
-    cores: Boxes within the bodies that stand still, in the world, (s, 4, 4).
-    surely: How deep a ball must be in a core for a pair to collide for sure, (p,), m.
+    numbers, integers: All that is known of the bodies, and room to work in; see
+        `Tables`. As two arrays they are handed over four times as fast as one by one.
+    clear: Tables of clear cells, (k, c, c); see `clear_cells`.
+    found: What was found, see there, (c, 3); finds beyond c are counted only.
     depth: By how much the boxes of each find overlap, m, and how fast the pair can come
         nearer to each other from there to the ends of the stretch, m for the whole
         motion, (c, 2).
@@ -32,10 +22,13 @@ Arguments that several functions share:
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit, types
 
 from mmplan.collision.pairs import CERTAIN, Flags, Indices
+from mmplan.collision.planner_space import ROUNDING
 from mmplan.shapes import Array
 
 STATIC, MOVING = -2, -1
@@ -50,22 +43,191 @@ _CLOSE = 0.05
 # Into how many parts a motion can be cut, and how often it is halved at most.
 PARTS = 1 << 30
 HALVINGS = 16
+# Where `check_edge` leaves the number of steps, and how many integers come first.
+STEPS = 6
+_HEAD = 7
+
+
+class Sizes(NamedTuple):
+    """How many there are of each."""
+
+    joints: int
+    nq: int
+    moving: int
+    static: int
+    pairs: int
+    balls: int  # in a moving body
+
+
+class Tables(NamedTuple):
+    """What is known of the bodies, then room that the functions here work in."""
+
+    # Poses of joints in their parents' frames, (joints, 4, 3, 4), for each the factors
+    # of 1, sin q, cos q and q.
+    basis: Array
+    # The axis of each joint in its frame, and 1 if it turns, (joints, 4).
+    axes: Array
+    # The boxes of the moving bodies in the frames of their joints, (m, 4, 4).
+    moving: Array
+    # The boxes of the bodies that stand still, in the world, (s, 4, 4).
+    static: Array
+    # The lower and the upper corner of the upright boxes about these, (s, 6).
+    upright: Array
+    # Centres and radii of balls within the moving bodies, in the frames of their boxes,
+    # (m, b, 4).
+    balls: Array
+    # Boxes within the bodies that stand still, in the world, (s, 4, 4).
+    cores: Array
+    # How deep a ball must be in a core for a pair to collide for sure, (p,), m.
+    surely: Array
+    # How far each joint can carry a moving body, (m, nq), m/rad or m/m.
+    own: Array
+    # How far it can carry the bodies of a pair towards each other, (p, nq).
+    levers: Array
+    # Which joints each table of clear cells is about, and its cells, (p, 6).
+    cells: Array
+    # Parent and place in q of each joint, (2, joints).
+    tree: Indices
+    # The joint of each moving body, (m,).
+    joint: Indices
+    # For each pair its number, its moving body, the other body, and what the latter is:
+    # `STATIC`, or moving too: `MOVING`, or the table of clear cells that holds for
+    # both, (p, 4).
+    pairs: Indices
+    # The poses of all joints, (joints + 1, 3, 4), of which the first is the world's.
+    T: Array
+    # The joints' axes in the world, (joints, 3).
+    turns: Array
+    # The boxes of the moving bodies in the world, (m, 4, 4).
+    boxes: Array
+    # How far each joint can carry them from there, (m, nq).
+    arms: Array
+    # A motion's size, where one is in it, and how far that may be off, (nq,).
+    span: Array
+    here: Array
+    spread: Array
+    # How far a motion carries each moving body in all, and from where it is, (m,).
+    far: Array
+    pace: Array
+    # Cosines between the axes of two boxes, (3, 3, 3).
+    cosines: Array
+    # When each moving body was placed last, (m,).
+    placed: Indices
+    # The pairs that are followed, (p * (HALVINGS + 2),).
+    lists: Indices
+    # Stretches to look at: first, last, and where their list is, (HALVINGS + 2, 4).
+    todo: Indices
+
+
+@njit(cache=True)
+def needed(sizes: Sizes) -> tuple[int, int]:
+    """How many numbers and how many integers tables of some sizes take."""
+    joints, nq, m, s, p, balls = sizes
+    numbers = joints * (48 + 4 + 12 + 3) + 12 + m * (16 + 4 * balls + 16 + 2)
+    numbers += s * (16 + 6 + 16) + p * 7 + nq * (2 * m + p + 3) + 27
+    integers = 2 * joints + 2 * m + p * (4 + HALVINGS + 2) + 4 * (HALVINGS + 2)
+    return numbers, integers + _HEAD
+
+
+@njit(cache=True)
+def tables(numbers: Array, integers: Indices) -> Tables:
+    """Views of the tables in two arrays; the integers begin with their sizes.
+
+    After these comes how many steps `check_edge` cut the last edge into.
+    """
+    joints, nq, m = integers[0], integers[1], integers[2]
+    s, p, b = integers[3], integers[4], integers[5]
+    at, n = 0, joints * 48
+    basis = numbers[at : at + n].reshape(joints, 4, 3, 4)
+    at, n = at + n, joints * 4
+    axes = numbers[at : at + n].reshape(joints, 4)
+    at, n = at + n, m * 16
+    moving = numbers[at : at + n].reshape(m, 4, 4)
+    at, n = at + n, s * 16
+    static = numbers[at : at + n].reshape(s, 4, 4)
+    at, n = at + n, s * 6
+    upright = numbers[at : at + n].reshape(s, 6)
+    at, n = at + n, m * b * 4
+    balls = numbers[at : at + n].reshape(m, b, 4)
+    at, n = at + n, s * 16
+    cores = numbers[at : at + n].reshape(s, 4, 4)
+    at, n = at + n, p
+    surely = numbers[at : at + n]
+    at, n = at + n, m * nq
+    own = numbers[at : at + n].reshape(m, nq)
+    at, n = at + n, p * nq
+    levers = numbers[at : at + n].reshape(p, nq)
+    at, n = at + n, p * 6
+    cells = numbers[at : at + n].reshape(p, 6)
+    at, n = at + n, (joints + 1) * 12
+    T = numbers[at : at + n].reshape(joints + 1, 3, 4)
+    at, n = at + n, joints * 3
+    turns = numbers[at : at + n].reshape(joints, 3)
+    at, n = at + n, m * 16
+    boxes = numbers[at : at + n].reshape(m, 4, 4)
+    at, n = at + n, m * nq
+    arms = numbers[at : at + n].reshape(m, nq)
+    at, n = at + n, nq
+    span = numbers[at : at + n]
+    at = at + n
+    here = numbers[at : at + n]
+    at = at + n
+    spread = numbers[at : at + n]
+    at, n = at + n, m
+    far = numbers[at : at + n]
+    at = at + n
+    pace = numbers[at : at + n]
+    at, n = at + n, 27
+    cosines = numbers[at : at + n].reshape(3, 3, 3)
+    at, n = _HEAD, 2 * joints
+    tree = integers[at : at + n].reshape(2, joints)
+    at, n = at + n, m
+    joint = integers[at : at + n]
+    at, n = at + n, p * 4
+    pairs = integers[at : at + n].reshape(p, 4)
+    at, n = at + n, m
+    placed = integers[at : at + n]
+    at, n = at + n, p * (HALVINGS + 2)
+    lists = integers[at : at + n]
+    at, n = at + n, (HALVINGS + 2) * 4
+    todo = integers[at : at + n].reshape(HALVINGS + 2, 4)
+    return Tables(
+        basis,
+        axes,
+        moving,
+        static,
+        upright,
+        balls,
+        cores,
+        surely,
+        own,
+        levers,
+        cells,
+        tree,
+        joint,
+        pairs,
+        T,
+        turns,
+        boxes,
+        arms,
+        span,
+        here,
+        spread,
+        far,
+        pace,
+        cosines,
+        placed,
+        lists,
+        todo,
+    )
 
 
 @njit(cache=True)
 def find_suspects(
     q: Array,
-    tree: Indices,
-    basis: Array,
-    joint: Indices,
-    moving: Array,
-    static: Array,
-    pairs: Indices,
-    cells: Array,
+    numbers: Array,
+    integers: Indices,
     clear: Flags,
-    balls: Array,
-    cores: Array,
-    surely: Array,
     found: Indices,
     depth: Array,
 ) -> int:
@@ -75,40 +237,45 @@ def find_suspects(
 
     Args:
         q: Configurations (n, nq).
-        found: Row and pair's number of each find, by row, (c, 2); those beyond c are
-            counted only.
+        numbers: See above.
+        integers: See above.
+        clear: See above.
+        found: Row and pair's number of each find, by row.
+        depth: See above.
     """
+    t = tables(numbers, integers)
+    joint, pairs, placed, boxes, static = t.joint, t.pairs, t.placed, t.boxes, t.static
     count = 0
-    boxes, room = np.empty((len(joint), 4, 4)), np.empty((3, 3, 3))
-    still, placed = np.zeros(q.shape[1]), np.zeros(len(joint), np.int64)
-    T = np.zeros((tree.shape[1] + 1, 3, 4))
-    T[0, 0, 0] = T[0, 1, 1] = T[0, 2, 2] = 1.0
+    for i in range(len(joint)):
+        placed[i] = 0
     for row in range(len(q)):
-        _place_joints(q[row], tree, basis, T)
+        for k in range(q.shape[1]):
+            t.here[k], t.spread[k] = q[row, k], 0.0
+        _place_joints(t.here, t.tree, t.basis, t.axes, t.T, t.turns)
         for e in range(len(pairs)):
             i, j = pairs[e, 1], pairs[e, 2]
             if placed[i] <= row:
                 placed[i] = row + 1
-                _place_box(T, joint[i], moving, boxes, i)
+                _place_box(t.T, joint[i], t.moving, boxes, i)
             if pairs[e, 3] == STATIC:
-                if _is_beyond(static, j, boxes, i, 0.0):
+                if _is_off(t.upright, j, boxes, i, 0.0):
                     continue
-                overlap = _overlap(static, j, boxes, i, 0.0, room)
+                overlap = _overlap(static, j, boxes, i, 0.0, t.cosines)
                 if overlap >= 0.0 and _are_one(
-                    boxes, i, balls, cores, j, surely[pairs[e, 0]]
+                    boxes, i, t.balls, t.cores, j, t.surely[pairs[e, 0]]
                 ):
                     _bring_forward(pairs, e)
                     return CERTAIN
             else:
                 if placed[j] <= row:
                     placed[j] = row + 1
-                    _place_box(T, joint[j], moving, boxes, j)
+                    _place_box(t.T, joint[j], t.moving, boxes, j)
                 if _are_far(boxes, i, j, 0.0):
                     continue
-                overlap = _overlap(boxes, j, boxes, i, 0.0, room)
+                overlap = _overlap(boxes, j, boxes, i, 0.0, t.cosines)
             if overlap < 0.0:
                 continue
-            if len(still) and _are_clear(q[row], still, pairs[e, 3], cells, clear):
+            if _are_clear(t.here, t.spread, pairs[e, 3], t.cells, clear):
                 continue
             if count < len(depth):
                 found[count, 0], found[count, 1] = row, pairs[e, 0]
@@ -123,21 +290,9 @@ def search_motion(
     dq: Array,
     steps: int,
     smallest: float,
-    tree: Indices,
-    basis: Array,
-    axes: Array,
-    own: Array,
-    levers: Array,
-    lists: Indices,
-    joint: Indices,
-    moving: Array,
-    static: Array,
-    pairs: Indices,
-    cells: Array,
+    numbers: Array,
+    integers: Indices,
     clear: Flags,
-    balls: Array,
-    cores: Array,
-    surely: Array,
     found: Indices,
     depth: Array,
 ) -> int:
@@ -160,34 +315,31 @@ def search_motion(
         dq: The way from there, (nq,).
         steps: See above.
         smallest: See above.
-        axes: The axis of each joint in its frame, and 1 if it turns, (joints, 4).
-        own: How far each joint can carry a moving body, (m, nq), m/rad or m/m.
-        levers: How far it can carry the bodies of a pair towards each other, (p, nq).
-        lists: Room for the pairs that are followed, (p * (HALVINGS + 2),).
+        numbers: See the module.
+        integers: See the module.
+        clear: See the module.
         found: Of each find the pair's number, then the step twice or the first and the
-            last of `PARTS` parts of the motion, (c, 3); those beyond c are counted
-            only.
-        depth: By how much the boxes overlap, (c,), m.
+            last of `PARTS` parts of the motion.
+        depth: See the module.
     """
+    t = tables(numbers, integers)
+    joint, pairs, placed, boxes, static = t.joint, t.pairs, t.placed, t.boxes, t.static
+    here, spread, span, lists, todo = t.here, t.spread, t.span, t.lists, t.todo
+    far, pace, arms, room = t.far, t.pace, t.arms, t.cosines
     count = 0
     sampled = steps > 0
     parts = steps if sampled else PARTS
-    span, here, spread = np.abs(dq), np.empty(len(q)), np.empty(len(q))
-    far, pace = np.zeros(len(joint)), np.empty(len(joint))
-    arms = np.zeros((len(joint), len(q)))
+    for k in range(len(q)):
+        span[k] = abs(dq[k])
     for i in range(len(joint)):
+        placed[i], far[i] = 0, 0.0
         for k in range(len(q)):
-            far[i] += own[i, k] * span[k]
+            far[i] += t.own[i, k] * span[k]
     for e in range(len(pairs)):
         lists[e] = e
-    T = np.zeros((tree.shape[1] + 1, 3, 4))
-    T[0, 0, 0] = T[0, 1, 1] = T[0, 2, 2] = 1.0
-    boxes, room = np.empty((len(joint), 4, 4)), np.empty((3, 3, 3))
-    placed, node = np.zeros(len(joint), np.int64), 0
-    # Stretches yet to be looked at: first and last, and where their list of pairs is.
-    todo = np.empty((HALVINGS + 2, 4), np.int64)
-    todo[0] = (1 if sampled else 0, parts, 0, len(pairs))
-    open_ = 1
+    node, open_ = 0, 1
+    todo[0, 0], todo[0, 1] = 1 if sampled else 0, parts
+    todo[0, 2], todo[0, 3] = 0, len(pairs)
     while open_ > 0:
         open_ -= 1
         first, last = todo[open_, 0], todo[open_, 1]
@@ -197,7 +349,7 @@ def search_motion(
         for k in range(len(q)):
             here[k] = q[k] + middle / parts * dq[k]
             spread[k] = half * span[k]
-        _place_joints(here, tree, basis, T)
+        _place_joints(here, t.tree, t.basis, t.axes, t.T, t.turns)
         node += 1
         short = not sampled and last - first <= PARTS >> HALVINGS
         kept = end
@@ -205,52 +357,55 @@ def search_motion(
             e = lists[place]
             i, j = pairs[e, 1], pairs[e, 2]
             if placed[i] < node:
-                placed[i], moved = node, half * far[i]
-                pace[i] = _place_mover(
-                    T, joint, moving, boxes, i, moved, tree, axes, own, span, arms
-                )
+                placed[i] = node
+                _place_box(t.T, joint[i], t.moving, boxes, i)
+                _reckon_pace(i, half * far[i], joint[i], t)
             speed = pace[i]
-            if pairs[e, 3] != STATIC:
-                if placed[j] < node:
-                    placed[j], moved = node, half * far[j]
-                    pace[j] = _place_mover(
-                        T, joint, moving, boxes, j, moved, tree, axes, own, span, arms
-                    )
-                speed = 0.0
-                for k in range(len(q)):
-                    lever = min(levers[pairs[e, 0], k], arms[i, k] + arms[j, k])
-                    speed += lever * span[k]
             reach = half * speed
             # Boxes are compared if that can tell more than the ball about one of them.
-            fine = reach <= _COARSE
             if pairs[e, 3] == STATIC:
-                if _is_beyond(static, j, boxes, i, reach):
+                if _is_off(t.upright, j, boxes, i, reach):
                     continue
+                fine = reach <= _COARSE
                 overlap = -1.0
                 if fine:
                     overlap = _overlap(static, j, boxes, i, reach, room) - reach
                     if overlap < -reach:
                         continue
+                elif _is_beyond(static, j, boxes, i, reach):
+                    continue
                 hit = overlap >= 0.0
                 if (hit and sampled and reach > 0.0) or not (
                     fine or _is_beyond(static, j, boxes, i, 0.0)
                 ):
                     overlap = _overlap(static, j, boxes, i, 0.0, room)
                     hit = overlap >= 0.0
-                if hit and _are_one(boxes, i, balls, cores, j, surely[pairs[e, 0]]):
+                if hit and _are_one(
+                    boxes, i, t.balls, t.cores, j, t.surely[pairs[e, 0]]
+                ):
                     _bring_forward(pairs, e)
                     return CERTAIN
             else:
+                if placed[j] < node:
+                    placed[j] = node
+                    _place_box(t.T, joint[j], t.moving, boxes, j)
+                    _reckon_pace(j, half * far[j], joint[j], t)
+                if _are_far(boxes, i, j, reach + half * pace[j]):
+                    continue
+                speed = 0.0
+                for k in range(len(q)):
+                    lever = min(t.levers[pairs[e, 0], k], arms[i, k] + arms[j, k])
+                    speed += lever * span[k]
+                reach = half * speed
                 if _are_far(boxes, i, j, reach):
                     continue
+                fine = reach <= _COARSE
                 overlap = -1.0
                 if fine:
                     overlap = _overlap(boxes, j, boxes, i, reach, room) - reach
                     if overlap < -reach:
                         continue
-                if pairs[e, 3] >= 0 and _are_clear(
-                    here, spread, pairs[e, 3], cells, clear
-                ):
+                if _are_clear(here, spread, pairs[e, 3], t.cells, clear):
                     continue
                 hit = overlap >= 0.0
                 if (hit and sampled and reach > 0.0) or not (
@@ -275,89 +430,162 @@ def search_motion(
             continue
         # The first half comes last, so that it is looked at next.
         if middle < last:
-            todo[open_] = (middle + 1 if sampled else middle, last, end, kept)
+            todo[open_, 0] = middle + 1 if sampled else middle
+            todo[open_, 1], todo[open_, 2], todo[open_, 3] = last, end, kept
             open_ += 1
         if middle > first:
-            todo[open_] = (first, middle - 1 if sampled else middle, end, kept)
+            todo[open_, 1] = middle - 1 if sampled else middle
+            todo[open_, 0], todo[open_, 2], todo[open_, 3] = first, end, kept
             open_ += 1
     return count
 
 
 @njit(cache=True)
-def _place_joints(q: Array, tree: Indices, basis: Array, T: Array) -> None:
-    """Set T (joints + 1, 3, 4) to the poses of all joints; T[0] is the world's."""
-    relative = np.empty((1, 3, 4))
+def check_state(
+    point: Array,
+    places: Indices,
+    space: Array,
+    followers: Array,
+    numbers: Array,
+    integers: Indices,
+    clear: Flags,
+    found: Indices,
+    depth: Array,
+) -> int:
+    """What `find_suspects` says of one point of a planner's space; see `check_edge`."""
+    q = np.empty((1, space.shape[1]))
+    _configure(point, 0, places, space, followers, q[0])
+    return find_suspects(q, numbers, integers, clear, found, depth)
+
+
+@njit(cache=True)
+def check_edge(
+    ends: Array,
+    places: Indices,
+    space: Array,
+    followers: Array,
+    resolution: float,
+    numbers: Array,
+    integers: Indices,
+    clear: Flags,
+    found: Indices,
+    depth: Array,
+) -> int:
+    """What `search_motion` says of the steps of an edge in a planner's space.
+
+    Args:
+        ends: The coordinates of both ends, (2 k,).
+        places: Where in q coordinates belong, (k,).
+        space: Values of joints that stand still, what coordinates are divided by, 1 for
+            joints that wrap, then lever arms: see `Sweep`; (3 + rows, nq).
+        followers: Place, leader's place, multiplier and offset of those, (f, 4).
+        resolution: How far any point may move between two steps, m.
+        numbers: See the module.
+        integers: See the module.
+        clear: See the module.
+        found: See `search_motion`.
+        depth: See the module.
+    """
+    nq = space.shape[1]
+    q, dq = np.empty(nq), np.empty(nq)
+    _configure(ends, 0, places, space, followers, q)
+    _configure(ends, len(places), places, space, followers, dq)
+    for k in range(nq):
+        if space[2, k] > 0.0:
+            dq[k] += 2.0 * np.pi * np.rint((q[k] - dq[k]) / (2.0 * np.pi))
+        dq[k] -= q[k]
+    farthest = 0.0
+    for row in range(3, len(space)):
+        way = 0.0
+        for k in range(nq):
+            way += space[row, k] * abs(dq[k])
+        farthest = max(farthest, way)
+    steps = max(1, int(np.ceil(farthest / resolution - ROUNDING)))
+    integers[STEPS] = steps
+    return search_motion(q, dq, steps, 0.0, numbers, integers, clear, found, depth)
+
+
+@njit(cache=True)
+def _configure(
+    points: Array, at: int, places: Indices, space: Array, followers: Array, q: Array
+) -> None:
+    """Set q (nq,) to the configuration of the point that begins there in `points`."""
+    for k in range(len(q)):
+        q[k] = space[0, k]
+    for k in range(len(places)):
+        q[places[k]] = points[at + k] / space[1, places[k]]
+    for row in range(len(followers)):
+        leader = q[int(followers[row, 1])]
+        q[int(followers[row, 0])] = followers[row, 2] * leader + followers[row, 3]
+
+
+@njit(cache=True)
+def _place_joints(
+    q: Array, tree: Indices, basis: Array, axes: Array, T: Array, turns: Array
+) -> None:
+    """Set T (joints + 1, 3, 4) to the joints' poses, and `turns` to their axes."""
     for k in range(tree.shape[1]):
-        value = q[tree[1, k]]
-        sine, cosine = np.sin(value), np.cos(value)
-        for i in range(3):
-            for j in range(4):
-                relative[0, i, j] = (
-                    basis[k, 0, i, j]
-                    + basis[k, 1, i, j] * sine
-                    + basis[k, 2, i, j] * cosine
-                    + basis[k, 3, i, j] * value
+        above, value = tree[0, k], q[tree[1, k]]
+        sine, cosine = 0.0, 0.0
+        if axes[k, 3] > 0.0:
+            sine, cosine = np.sin(value), np.cos(value)
+        for j in range(4):
+            x = basis[k, 0, 0, j] + basis[k, 1, 0, j] * sine
+            y = basis[k, 0, 1, j] + basis[k, 1, 1, j] * sine
+            z = basis[k, 0, 2, j] + basis[k, 1, 2, j] * sine
+            x += basis[k, 2, 0, j] * cosine + basis[k, 3, 0, j] * value
+            y += basis[k, 2, 1, j] * cosine + basis[k, 3, 1, j] * value
+            z += basis[k, 2, 2, j] * cosine + basis[k, 3, 2, j] * value
+            for i in range(3):
+                T[k + 1, i, j] = (
+                    T[above, i, 0] * x + T[above, i, 1] * y + T[above, i, 2] * z
                 )
-        _compose(T, tree[0, k], relative, 0, T, k + 1)
+        for i in range(3):
+            T[k + 1, i, 3] += T[above, i, 3]
+            turns[k, i] = (
+                T[k + 1, i, 0] * axes[k, 0]
+                + T[k + 1, i, 1] * axes[k, 1]
+                + T[k + 1, i, 2] * axes[k, 2]
+            )
 
 
 @njit(cache=True)
 def _place_box(T: Array, joint: int, moving: Array, boxes: Array, i: int) -> None:
     """Set box i of boxes (m, 4, 4) to where the pose of its joint takes it."""
-    _compose(T, joint, moving, i, boxes, i)
-    for k in range(4):
-        boxes[i, 3, k] = moving[i, 3, k]
+    for j in range(4):
+        x, y, z = moving[i, 0, j], moving[i, 1, j], moving[i, 2, j]
+        for k in range(3):
+            boxes[i, k, j] = (
+                T[joint, k, 0] * x + T[joint, k, 1] * y + T[joint, k, 2] * z
+            )
+        boxes[i, 3, j] = moving[i, 3, j]
+    for k in range(3):
+        boxes[i, k, 3] += T[joint, k, 3]
 
 
 @njit(cache=True)
-def _place_mover(
-    T: Array,
-    joint: Indices,
-    moving: Array,
-    boxes: Array,
-    i: int,
-    moved: float,
-    tree: Indices,
-    axes: Array,
-    own: Array,
-    span: Array,
-    arms: Array,
-) -> float:
-    """Place box i and bound how far joints carry it, if no farther than `moved`.
+def _reckon_pace(i: int, moved: float, above: int, t: Tables) -> None:
+    """Bound how far joints carry body i, which is placed, if no farther than `moved`.
 
-    Sets row i of `arms` (m, nq), m/rad or m/m, and returns the sum with `span` (nq,).
+    Sets row i of `arms`, m/rad or m/m, and its sum with `span`.
     """
-    _place_box(T, joint[i], moving, boxes, i)
-    above = joint[i]
-    total = 0.0
+    boxes, T, turns, arms, span, own = t.boxes, t.T, t.turns, t.arms, t.span, t.own
+    total, around = 0.0, boxes[i, 3, 3] + moved
     while above > 0:
         k = above - 1
-        place = tree[1, k]
+        place = t.tree[1, k]
         arm = own[i, place]
-        if axes[k, 3] > 0.0:
+        if t.axes[k, 3] > 0.0 and span[place] > 0.0:
             x = boxes[i, 0, 3] - T[above, 0, 3]
             y = boxes[i, 1, 3] - T[above, 1, 3]
             z = boxes[i, 2, 3] - T[above, 2, 3]
-            along = 0.0
-            for axis in range(3):
-                u = T[above, 0, axis] * x + T[above, 1, axis] * y
-                along += axes[k, axis] * (u + T[above, 2, axis] * z)
+            along = x * turns[k, 0] + y * turns[k, 1] + z * turns[k, 2]
             beside = max(0.0, x * x + y * y + z * z - along * along)
-            arm = min(arm, np.sqrt(beside) + boxes[i, 3, 3] + moved)
+            arm = min(arm, np.sqrt(beside) + around)
         arms[i, place] = arm
         total += arm * span[place]
-        above = tree[0, k]
-    return total
-
-
-@njit(cache=True)
-def _compose(A: Array, a: int, B: Array, b: int, out: Array, o: int) -> None:
-    """Set pose o in `out` to the product of poses a in A and b in B."""
-    for i in range(3):
-        x, y, z = A[a, i, 0], A[a, i, 1], A[a, i, 2]
-        for j in range(4):
-            out[o, i, j] = x * B[b, 0, j] + y * B[b, 1, j] + z * B[b, 2, j]
-        out[o, i, 3] += A[a, i, 3]
+        above = t.tree[0, k]
+    t.pace[i] = total
 
 
 @njit(cache=True)
@@ -385,6 +613,19 @@ def _are_clear(q: Array, spread: Array, table: int, cells: Array, clear: Flags) 
 
 # In the following, bodies are rows of arrays of boxes: views of these would take longer
 # to make than all else.
+
+
+@njit(cache=True)
+def _is_off(upright: Array, a: int, B: Array, b: int, margin: float) -> bool:
+    """The same for an upright box."""
+    radius = B[b, 3, 3] + margin
+    square = 0.0
+    for axis in range(3):
+        centre = B[b, axis, 3]
+        beyond = max(upright[a, axis] - centre, centre - upright[a, 3 + axis])
+        if beyond > 0.0:
+            square += beyond * beyond
+    return square > radius * radius
 
 
 @njit(cache=True)
@@ -510,19 +751,21 @@ def _compile() -> None:
     Otherwise that would be done, once for arrays that can be written to and once for
     others, in the middle of the first search that gets here.
     """
-    table, vector, poses = (_array(types.float64, ndim) for ndim in (2, 1, 3))
-    indices, index_table = (_array(types.int64, ndim) for ndim in (1, 2))
-    tree = (index_table, _array(types.float64, 4))
-    bodies = (indices, poses, poses, index_table, table, _array(types.bool_, 3))
-    room = (poses, poses, vector, index_table, table)
+    known = (_array(types.float64, 1), _array(types.int64, 1), _array(types.bool_, 3))
+    finds = (_array(types.int64, 2), _array(types.float64, 2))
     configurations = _array(types.float64, 2, readonly=True)
     configuration = _array(types.float64, 1, readonly=True)
     motion = (configuration, configuration, types.int64, types.float64)
-    levers = (table, table, table, indices)
-    find_suspects.compile((configurations, *tree, *bodies, *room))
-    find_suspects.disable_compile()
-    search_motion.compile((*motion, *tree, *levers, *bodies, *room))
-    search_motion.disable_compile()
+    point = (_array(types.float64, 1), _array(types.int64, 1))
+    space = (_array(types.float64, 2), _array(types.float64, 2))
+    for function, own in (
+        (find_suspects, (configurations,)),
+        (search_motion, motion),
+        (check_state, (*point, *space)),
+        (check_edge, (*point, *space, types.float64)),
+    ):
+        function.compile((*own, *known, *finds))
+        function.disable_compile()
 
 
 _compile()

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,10 +15,14 @@ import pinocchio as pin
 from mmplan.carry import Region
 from mmplan.collision.assembly import Assembly, Body, Clearance, TouchRules, assemble
 from mmplan.collision.checker import Checker
+from mmplan.collision.planner_space import PlannerSpace
 from mmplan.collision.scenery import Scenery
 from mmplan.problem import Problem
 from mmplan.robot import Robot
 from mmplan.shapes import Array, read_only
+
+if TYPE_CHECKING:
+    from mmplan.collision.compiled_space import CompiledSpace
 
 # How deep an object may press into what it stands on, m.
 TOUCH_TOLERANCE = 0.001
@@ -203,6 +207,10 @@ class CollisionWorld:
     def motion_collides(self, q: Array, dq: Array) -> bool:
         """Whether anything collides anywhere on the way from q (nq,) to q + dq."""
         return self._checker.motion_collides(q, dq)
+
+    def in_space(self, space: PlannerSpace) -> CompiledSpace | None:
+        """Quick answers to questions in a planner's coordinates, where there are."""
+        return self._checker.in_space(space)
 
     def contacts(self, q: Array) -> tuple[Contact, ...]:
         """What overlaps more than it may at one configuration (nq,), deepest first."""

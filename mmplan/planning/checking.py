@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from mmplan.collision import coarse_to_fine
+from mmplan.collision import ROUNDING, PlannerSpace, coarse_to_fine
 from mmplan.planning.sweep import sweep_of
-from mmplan.planning.world import PlanningWorld, moving_part
+from mmplan.planning.world import PlanningWorld, QuickAnswers, moving_part
 from mmplan.shapes import Array
 
 # How many times longer steps are where continuous checks have the last word.
@@ -48,6 +48,12 @@ class PathChecker:
         """One that is quick, for paths that are going to be proven afterwards."""
         return PathChecker(self.world, COARSER * self.resolution)
 
+    def in_space(self, space: PlannerSpace) -> QuickAnswers | None:
+        """Quick answers in a planner's coordinates, where the world has such by now."""
+        if self._moving is None or self._moving is not self.world:
+            return None
+        return self._moving.in_space(space)
+
     def states_free(self, q: Array) -> bool:
         """Whether all of the configurations (n, nq) are free of collision."""
         self.states += len(q)
@@ -71,7 +77,8 @@ class PathChecker:
 
     def _steps_free(self, q: Array, dq: Array) -> bool:
         """Whether all steps from q (nq,) to q + dq are free."""
-        steps = max(1, math.ceil(self.sweep.farthest(dq) / self.resolution))
+        steps = self.sweep.farthest(dq) / self.resolution
+        steps = max(1, math.ceil(steps - ROUNDING))
         if self._moving is not None and self._moving is self.world:
             self.states += steps
             return not self._moving.steps_collide(q, dq, steps)
@@ -95,8 +102,8 @@ class PathChecker:
 
     def steps(self, dq: Array) -> npt.NDArray[np.int64]:
         """Into how many steps joint moves (..., nq) must be cut, (...,), at least 1."""
-        steps = np.ceil(self.sweep.distance(dq) / self.resolution)
-        return np.maximum(steps, 1).astype(np.int64)
+        steps = self.sweep.distance(dq) / self.resolution
+        return np.maximum(np.ceil(steps - ROUNDING), 1).astype(np.int64)
 
 
 def even_fractions(

@@ -13,9 +13,11 @@ import numpy as np
 import numpy.typing as npt
 from ompl import base as ob
 
+from mmplan.collision import PlannerSpace
 from mmplan.planning.checking import PathChecker
 from mmplan.planning.joints import MovingJoints
 from mmplan.planning.metric import Metric
+from mmplan.planning.world import QuickAnswers
 from mmplan.shapes import Array
 
 # Sampled joint values keep this share of their range away from the joint limits, so
@@ -40,27 +42,47 @@ class ScaledStates:
         self._round = joints.indices[joints.wraps]
         self._real = not len(self._round)
         self._size = len(self._straight)
-        self._places = _as_slice(self._straight)
-        self._scales = metric.weights[self._straight]
+        self._places = _as_slice(np.concatenate([self._straight, self._round]))
+        self._scales = np.ones_like(q_still)
+        self._scales[self._straight] = metric.weights[self._straight]
+
+    def coordinates(self, state: ob.State) -> list[float]:
+        """The coordinates of a state, those of joints that wrap last."""
+        k = self._size
+        if self._real:
+            values: list[float] = state[0:k]
+            return values
+        first = int(k > 0)
+        values = state[0][0:k] if k else []
+        return values + [state[first + i].value for i in range(len(self._round))]
 
     def configuration(self, state: ob.State) -> Array:
         """The configuration (nq,) of a state; joints that wrap are in [-π, π]."""
         q = self._q_still.copy()
-        k = self._size
-        if self._real:
-            q[self._places] = state[0:k] / self._scales
-        else:
-            if k:
-                q[self._straight] = np.array(state[0][0:k]) / self._scales
-            first = int(k > 0)
-            q[self._round] = [state[first + i].value for i in range(len(self._round))]
+        q[self._places] = self.coordinates(state)
+        q /= self._scales
         return self._joints.with_followers(q)
+
+    def planner_space(self, checker: PathChecker) -> PlannerSpace:
+        """What coordinates mean where steps are to be as a checker's."""
+        places = np.concatenate([self._straight, self._round])
+        wraps = np.zeros(len(self._q_still))
+        wraps[self._round] = 1.0
+        return PlannerSpace(
+            places=places,
+            q_still=self._q_still,
+            scales=self._scales,
+            wraps=wraps,
+            levers=checker.sweep.levers,
+            followers=self._joints.followers,
+            resolution=checker.resolution,
+        )
 
     def write(self, q: Array, state: ob.State) -> None:
         """Set a state to a configuration (nq,)."""
         k = len(self._straight)
         part = state[0] if k and len(self._round) else state
-        for i, value in enumerate(q[self._straight] * self._scales):
+        for i, value in enumerate((q * self._scales)[self._straight]):
             part[i] = float(value)
         for i, angle in enumerate(q[self._round]):
             state[int(k > 0) + i].value = float(
@@ -85,9 +107,10 @@ class ScaledStates:
         straight = ~self._joints.wraps
         lower, upper = self._joints.lower[straight], self._joints.upper[straight]
         margin = LIMIT_MARGIN * (upper - lower)
-        scaled = ends[:, self._straight] * self._scales
-        low = np.vstack([(lower + margin) * self._scales, scaled]).min(axis=0)
-        high = np.vstack([(upper - margin) * self._scales, scaled]).max(axis=0)
+        scales = self._scales[self._straight]
+        scaled = ends[:, self._straight] * scales
+        low = np.vstack([(lower + margin) * scales, scaled]).min(axis=0)
+        high = np.vstack([(upper - margin) * scales, scaled]).max(axis=0)
         bounds = ob.RealVectorBounds(len(self._straight))
         for i, (least, most) in enumerate(zip(low, high, strict=True)):
             bounds.setLow(i, float(least))
@@ -102,41 +125,71 @@ def _as_slice(places: npt.NDArray[np.int64]) -> slice | npt.NDArray[np.int64]:
     return places
 
 
+class Answers:
+    """Answers to OMPL's questions from a world.
+
+    Most are settled in compiled code, where there is such, before OMPL's states are put
+    in configurations.
+    """
+
+    def __init__(self, states: ScaledStates, checker: PathChecker) -> None:
+        """Answer from the checker's world."""
+        self.states = states
+        self.checker = checker
+        self._space = states.planner_space(checker)
+        self._quick: QuickAnswers | None = None
+
+    def state_free(self, state: ob.State) -> bool:
+        """Whether one state is free of collision."""
+        states, checker = self.states, self.checker
+        quick = self._quick = self._quick or checker.in_space(self._space)
+        if quick is not None:
+            free = quick.state_free(states.coordinates(state))
+            if free is not None:
+                checker.states += 1
+                return free
+        return checker.states_free(states.configuration(state)[None])
+
+    def edge_free(self, start: ob.State, end: ob.State) -> bool:
+        """Whether a whole edge is free of collision, its start taken as checked."""
+        states, checker = self.states, self.checker
+        quick = self._quick = self._quick or checker.in_space(self._space)
+        if quick is not None and not checker.continuous:
+            free = quick.edge_free(states.coordinates(start) + states.coordinates(end))
+            if free is not None:
+                checker.edges += 1
+                checker.states += quick.steps
+                return free
+        q_from, q_to = states.configuration(start), states.configuration(end)
+        if states.metric.any_wraps:
+            q_to = q_to + states.metric.turns(q_to, q_from)
+        return checker.edge_free(q_from, q_to)
+
+
 class WorldValidity(ob.StateValidityChecker):
     """Whether one state is free of collision."""
 
-    def __init__(
-        self, si: ob.SpaceInformation, states: ScaledStates, checker: PathChecker
-    ) -> None:
-        """Check states against the checker's world."""
+    def __init__(self, si: ob.SpaceInformation, answers: Answers) -> None:
+        """Pass OMPL's questions on."""
         super().__init__(si)
-        self._states = states
-        self._checker = checker
+        self.answers = answers
 
     def isValid(self, state: ob.State) -> bool:
         """OMPL's question."""
-        return self._checker.states_free(self._states.configuration(state)[None])
+        return self.answers.state_free(state)
 
 
 class WorldMotions(ob.MotionValidator):
     """Whether a whole edge is free of collision, in one call."""
 
-    def __init__(
-        self, si: ob.SpaceInformation, states: ScaledStates, checker: PathChecker
-    ) -> None:
-        """Check edges against the checker's world."""
+    def __init__(self, si: ob.SpaceInformation, answers: Answers) -> None:
+        """Pass OMPL's questions on."""
         super().__init__(si)
-        self._states = states
-        self._checker = checker
+        self.answers = answers
 
     def checkMotion(self, start: ob.State, end: ob.State) -> bool:
         """OMPL's question; it takes the start as checked."""
-        q_from = self._states.configuration(start)
-        q_to = self._states.configuration(end)
-        metric = self._states.metric
-        if metric.any_wraps:
-            q_to = q_to + metric.turns(q_to, q_from)
-        return self._checker.edge_free(q_from, q_to)
+        return self.answers.edge_free(start, end)
 
 
 def space_information(
@@ -147,7 +200,8 @@ def space_information(
     The ends (n, nq) of the wanted path are always inside.
     """
     si = ob.SpaceInformation(states.space(ends))
-    si.setStateValidityChecker(WorldValidity(si, states, checker))
-    si.setMotionValidator(WorldMotions(si, states, checker))
+    answers = Answers(states, checker)
+    si.setStateValidityChecker(WorldValidity(si, answers))
+    si.setMotionValidator(WorldMotions(si, answers))
     si.setup()
     return si

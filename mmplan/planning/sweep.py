@@ -36,16 +36,17 @@ class Sweep:
 
     def farthest(self, dq: Array) -> float:
         """The same as `distance` for one move (nq,)."""
-        ways: list[float] = (self._every @ np.abs(dq)).tolist()
+        ways: list[float] = (self.levers @ np.abs(dq)).tolist()
         return max(ways)
 
     def distance(self, dq: Array) -> Array:
         """A bound on the way (m) of any point, (...,), for joint moves (..., nq)."""
-        ways: Array = (np.abs(dq) @ self._every.T).max(axis=-1)
+        ways: Array = (np.abs(dq) @ self.levers.T).max(axis=-1)
         return ways
 
     @cached_property
-    def _every(self) -> Array:
+    def levers(self) -> Array:
+        """Both together, (bodies + rules, nq)."""
         return np.vstack([self.reach, self.rules])
 
 

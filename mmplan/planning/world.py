@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
+from mmplan.collision import PlannerSpace
 from mmplan.shapes import Array
 
 
@@ -53,6 +54,20 @@ class PlanningWorld(Protocol):
         """What overlaps at one configuration (nq,), worst first."""
 
 
+class QuickAnswers(Protocol):
+    """Which points and edges of a planner's space are free, where that is told soon."""
+
+    def state_free(self, point: list[float]) -> bool | None:
+        """Whether a point (k,) is free, if that is settled."""
+
+    def edge_free(self, ends: list[float]) -> bool | None:
+        """Whether all steps of an edge are free, if settled; both ends, (2 k,)."""
+
+    @property
+    def steps(self) -> int:
+        """Into how many steps the last edge was cut."""
+
+
 @runtime_checkable
 class MovingWorld(PlanningWorld, Protocol):
     """A world that answers for whole motions from q (nq,) to q + dq."""
@@ -62,6 +77,9 @@ class MovingWorld(PlanningWorld, Protocol):
 
     def motion_collides(self, q: Array, dq: Array) -> bool:
         """Whether anything collides on the way."""
+
+    def in_space(self, space: PlannerSpace) -> QuickAnswers | None:
+        """Quick answers to questions in a planner's coordinates, where there are."""
 
 
 @runtime_checkable
