@@ -125,9 +125,10 @@ def _require_still(
 ) -> None:
     if not len(q_goals):
         raise ValueError("a path needs at least one goal")
-    followers = [f.follower for f in joints.followers]
-    moving = np.concatenate([joints.indices, np.array(followers, np.int64)])
-    still = np.setdiff1d(np.arange(len(q_start)), moving)
+    stands = np.ones(len(q_start), dtype=np.bool_)
+    stands[joints.indices] = False
+    stands[[f.follower for f in joints.followers]] = False
+    still = np.flatnonzero(stands)
     moved = still[np.any(q_goals[:, still] != q_start[still], axis=0)]
     if len(moved):
         names = [world.model.names[j] for j in range(1, world.model.njoints)]

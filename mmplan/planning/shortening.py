@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from mmplan.collision import planning_clock
@@ -35,12 +37,15 @@ def shorten(
     path = drop_waypoints(path, checker, metric)
     moving = np.flatnonzero(np.ptp(path, axis=0))
     moving = np.intersect1d(moving, joints.indices)
+    along = _lengths(path, metric.weights)
     for attempt in range(attempts):
         if len(path) == 2 or planning_clock() > deadline:  # 2: straight already
             break
         joint = int(rng.choice(moving)) if attempt % 2 else None
-        first, second = np.sort(rng.random(2))
-        path = _try_shortcut(path, checker, joints, metric, (first, second), joint)
+        places = sorted(rng.random(2).tolist())
+        shorter = _try_shortcut(path, along, checker, joints, metric, places, joint)
+        if shorter is not None:
+            path, along = shorter, _lengths(shorter, metric.weights)
     return drop_waypoints(path, checker, metric)
 
 
@@ -61,40 +66,50 @@ def drop_waypoints(path: Array, checker: PathChecker, metric: Metric) -> Array:
 
 def path_length(path: Array, weights: Array) -> float:
     """The length of a polyline (n, nq), m, weighted by lever arms (nq,)."""
-    return float(np.linalg.norm(np.diff(path, axis=0) * weights, axis=1).sum())
+    return float(_edges(path, weights).sum())
+
+
+def _edges(path: Array, weights: Array) -> Array:
+    """The lengths of a polyline's edges, (n - 1,)."""
+    lengths: Array = np.linalg.norm((path[1:] - path[:-1]) * weights, axis=1)
+    return lengths
+
+
+def _lengths(path: Array, weights: Array) -> Array:
+    """How long a polyline (n, nq) is up to each waypoint, (n,)."""
+    return np.concatenate([[0.0], np.cumsum(_edges(path, weights))])
 
 
 def _try_shortcut(
     path: Array,
+    along: Array,
     checker: PathChecker,
     joints: MovingJoints,
     metric: Metric,
-    places: tuple[float, float],
+    places: Sequence[float],
     joint: int | None,
-) -> Array:
-    """The path with a shortcut between two places in [0, 1], or as it was."""
+) -> Array | None:
+    """The path with a shortcut between two places in [0, 1], if that is shorter."""
     weights = metric.weights
-    steps = np.linalg.norm(np.diff(path, axis=0) * weights, axis=1)
-    along = np.concatenate([[0.0], np.cumsum(steps)])
     i, q_i = _place(path, along, places[0] * along[-1])
     j, q_j = _place(path, along, places[1] * along[-1])
     if i == j:
-        return path
+        return None
     old = np.vstack([q_i, path[i + 1 : j + 1], q_j])
     turns = metric.turns(q_j, q_i) if joint is None else np.zeros_like(q_j)
     new = np.vstack([q_i, q_j + turns])
     if joint is not None:
         new = joints.with_followers(_straightened(old, weights, joint))
     if path_length(old, weights) - path_length(new, weights) < MIN_GAIN * along[-1]:
-        return path
+        return None
     if not checker.path_free(new):
-        return path
+        return None
     return np.vstack([path[: i + 1], new, path[j + 1 :] + turns])
 
 
 def _place(path: Array, along: Array, length: float) -> tuple[int, Array]:
     """The edge at a length along the path, and the configuration there."""
-    edge = int(np.clip(np.searchsorted(along, length) - 1, 0, len(path) - 2))
+    edge = min(max(int(along.searchsorted(length)) - 1, 0), len(path) - 2)
     step = along[edge + 1] - along[edge]
     fraction = (length - along[edge]) / step if step > 0.0 else 0.0
     q: Array = path[edge] + fraction * (path[edge + 1] - path[edge])
@@ -103,8 +118,8 @@ def _place(path: Array, along: Array, length: float) -> tuple[int, Array]:
 
 def _straightened(part: Array, weights: Array, joint: int) -> Array:
     """Part of a path (n, nq) with one joint moving evenly from end to end."""
-    steps = np.linalg.norm(np.diff(part, axis=0) * weights, axis=1)
-    along = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+    along = _lengths(part, weights)
+    along /= along[-1]
     part = part.copy()
     part[:, joint] = part[0, joint] + along * (part[-1, joint] - part[0, joint])
     return part
