@@ -10,9 +10,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from multiprocessing.connection import Connection
-from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
 
 from mmplan.exceptions import MmplanError
+
+if TYPE_CHECKING:
+    from multiprocessing.context import ForkProcess
 
 T = TypeVar("T")
 P = ParamSpec("P")
@@ -77,7 +80,7 @@ def copied(subject: T, jobs: int, task: str) -> Iterator[Copy[T] | None]:
     with warnings.catch_warnings():
         # The threads that Python warns of show progress: the copy has no use for them.
         warnings.simplefilter("ignore", DeprecationWarning)
-        process.start()
+        _start_without_interrupts(process)
     theirs.close()
     try:
         yield Copy(ours, task)
@@ -85,6 +88,15 @@ def copied(subject: T, jobs: int, task: str) -> Iterator[Copy[T] | None]:
         process.kill()
         process.join()
         ours.close()
+
+
+def _start_without_interrupts(process: ForkProcess) -> None:
+    """Start a process that Ctrl-C is kept from: who asks is interrupted as well."""
+    usual = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        process.start()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, usual)
 
 
 def _can_fork() -> bool:
@@ -95,7 +107,6 @@ def _can_fork() -> bool:
 
 def _serve(subject: T, pipe: Connection, other_end: Connection) -> None:
     """Answer until there is nobody left to ask."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # who asks is interrupted as well
     other_end.close()
     with suppress(*_GONE):
         while True:
