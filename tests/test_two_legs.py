@@ -61,7 +61,10 @@ def bits(outcome: Outcome) -> object:
     return [
         (
             s.name,
-            *(x.tobytes() for x in (s.times, s.positions, s.velocities)),
+            *(
+                (x.tobytes(), x.flags.writeable)
+                for x in (s.times, s.positions, s.velocities)
+            ),
             {name: T.tobytes() for name, T in s.attached.items()},
         )
         for s in outcome

@@ -43,6 +43,14 @@ class _Ahead(NamedTuple):
         """Whether it begins at a configuration (nq,), to the last bit."""
         return bool(self.q_lifted.tobytes() == q.tobytes())
 
+    def segments(self) -> tuple[Segment, ...] | Blocked:
+        """What has come of it, once that is known; arrays are read-only again."""
+        outcome = self.answer()
+        for segment in () if isinstance(outcome, Blocked) else outcome:
+            for array in (segment.times, segment.positions, segment.velocities):
+                array.setflags(write=False)
+        return outcome
+
 
 @dataclass(frozen=True, eq=False)
 class TaskMotion:
@@ -129,7 +137,7 @@ class TaskMotion:
             return {number: error.blocked}
         q_lifted, lifted = pick[-1].path[-1], pick[-1].moves
         if ahead is not None and number == first and ahead.begins_at(q_lifted):
-            rest = ahead.answer()
+            rest = ahead.segments()
         else:
             rest = ready[number].delivery.segments(q_lifted, lifted, for_transfer)
         return {number: rest if isinstance(rest, Blocked) else fetched + rest}
