@@ -118,6 +118,18 @@ class Broadphase:
         for row, pair in self.likeliest(q + order / steps * dq):
             yield int(order[row, 0]), pair
 
+    def free_times(
+        self,
+        pair: int,  # noqa: ARG002 (what the compiled one goes by)
+        q: Array,  # noqa: ARG002
+        dq: Array,  # noqa: ARG002
+        normal: Array,  # noqa: ARG002
+        gap: float,
+        speed: float,
+    ) -> tuple[float, float]:
+        """How long a pair stays apart, going by its speed alone."""
+        return gap / speed, gap / speed
+
     def on_the_way(self, q: Array, dq: Array) -> list[Stretch]:
         """Where pairs may touch on the way from q (nq,) to q + dq.
 

@@ -149,8 +149,8 @@ class Checker:
         """Whether pairs stay apart in stretches of a motion.
 
         By their distance in the middle a pair stays apart until the joints can have
-        carried the bodies so far (Schwarzer, Saha, Latombe, 2005); what is not settled
-        by that is looked at in turn.
+        carried the bodies so far (Schwarzer, Saha, Latombe, 2005), towards each other
+        where that is known; what is not settled by that is looked at in turn.
         """
         todo: list[tuple[int, float, float, float]] = [*stretches[::-1]]
         while todo:
@@ -168,9 +168,13 @@ class Checker:
                 continue
             if (end - start) * speed <= _SMALLEST:
                 return False
-            free = gap / speed
-            todo.append((pair, start, middle - free, speed))
-            todo.append((pair, middle + free, end, speed))
+            before, after = self._motions.free_times(
+                pair, q + middle * dq, dq, found.normal, gap, speed
+            )
+            if before < middle - start:
+                todo.append((pair, start, middle - before, speed))
+            if after < end - middle:
+                todo.append((pair, middle + after, end, speed))
         return True
 
     def overlaps(self, q: Array) -> Iterator[tuple[int, float]]:

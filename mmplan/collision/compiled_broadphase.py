@@ -83,6 +83,11 @@ class CompiledBroadphase:
         known.joint[:] = [bodies[i].joint for i in moving]
         known.pairs[:] = _table(moving, static, pairs)
         known.T[0] = np.eye(3, 4)
+        self._movers = {
+            k: (mover, 1.0 if bodies[pairs[k, 0]].joint == 0 else -1.0)
+            for k, mover, _, kind in known.pairs.tolist()
+            if kind == kernels.STATIC
+        }
         self._clear = np.empty((0, 1, 1), dtype=np.bool_)
         self._make_room(1024)
 
@@ -130,6 +135,24 @@ class CompiledBroadphase:
                 found[:count].tolist(), speeds, strict=True
             )
         ]
+
+    def free_times(
+        self, pair: int, q: Array, dq: Array, normal: Array, gap: float, speed: float
+    ) -> tuple[float, float]:
+        """How long a convex pair stays apart before and after q (nq,) on a way.
+
+        Shares of the way from q to q + dq, for a pair that has a `gap` (m) along a
+        normal (3,) from its first body to the second, and comes nearer to each other
+        no faster than by `speed` (m). Where one of them stands still it counts in which
+        direction the other goes: one that slides along a shelf is free for long.
+        """
+        if pair not in self._movers:
+            return gap / speed, gap / speed
+        mover, sign = self._movers[pair]
+        times: tuple[float, float] = kernels.find_free_time(
+            q, dq, mover, sign * normal, gap, speed, *self.known[:2]
+        )
+        return times
 
     def in_space(self, space: PlannerSpace) -> CompiledSpace:
         """The same for questions in a planner's coordinates."""

@@ -506,6 +506,69 @@ def check_edge(
 
 
 @njit(cache=True)
+def find_free_time(
+    q: Array,
+    dq: Array,
+    i: int,
+    normal: Array,
+    gap: float,
+    speed: float,
+    numbers: Array,
+    integers: Indices,
+) -> tuple[float, float]:
+    """How long before and after q a body stays on its side of a plane.
+
+    Of all along a normal (3,) towards it, it is `gap` (m) beyond the plane at q. Its
+    points' speeds along the normal are linear in where they are, so that those of the
+    box about it bound them; and as no point moves faster than `speed` (m for the whole
+    motion), none speeds up by more than twice that times how far the joints turn.
+
+    Returns:
+        Shares of the motion from q (nq,) to q + dq.
+    """
+    t = tables(numbers, integers)
+    boxes, T, turns = t.boxes, t.T, t.turns
+    _place_joints(q, t.tree, t.basis, t.axes, T, turns)
+    _place_box(T, t.joint[i], t.moving, boxes, i)
+    rate, turning, u, v, w = 0.0, 0.0, 0.0, 0.0, 0.0
+    above = t.joint[i]
+    while above > 0:
+        k = above - 1
+        way = dq[t.tree[1, k]]
+        above = t.tree[0, k]
+        if t.axes[k, 3] > 0.0:
+            turning += abs(way)
+            x = way * (normal[1] * turns[k, 2] - normal[2] * turns[k, 1])
+            y = way * (normal[2] * turns[k, 0] - normal[0] * turns[k, 2])
+            z = way * (normal[0] * turns[k, 1] - normal[1] * turns[k, 0])
+            rate += x * (boxes[i, 0, 3] - T[k + 1, 0, 3])
+            rate += y * (boxes[i, 1, 3] - T[k + 1, 1, 3])
+            rate += z * (boxes[i, 2, 3] - T[k + 1, 2, 3])
+            u, v, w = u + x, v + y, w + z
+            continue
+        for axis in range(3):
+            along = T[above, axis, 0] * t.basis[k, 3, 0, 3]
+            along += T[above, axis, 1] * t.basis[k, 3, 1, 3]
+            along += T[above, axis, 2] * t.basis[k, 3, 2, 3]
+            rate += way * normal[axis] * along
+    spread = 0.0
+    for axis in range(3):
+        along = u * boxes[i, 0, axis] + v * boxes[i, 1, axis] + w * boxes[i, 2, axis]
+        spread += boxes[i, 3, axis] * abs(along)
+    bend = turning * speed
+    before = _time_to_go(gap, max(0.0, spread + rate), bend)
+    after = _time_to_go(gap, max(0.0, spread - rate), bend)
+    return max(before, gap / speed), max(after, gap / speed)
+
+
+@njit(cache=True)
+def _time_to_go(gap: float, speed: float, bend: float) -> float:
+    """When a gap (m) is gone at a speed and twice a bend of acceleration."""
+    root = speed + np.sqrt(speed * speed + 4.0 * bend * gap)
+    return 2.0 * gap / root if root > 0.0 else np.inf
+
+
+@njit(cache=True)
 def _configure(
     points: Array, at: int, places: Indices, space: Array, followers: Array, q: Array
 ) -> None:
@@ -758,6 +821,10 @@ def _compile() -> None:
     motion = (configuration, configuration, types.int64, types.float64)
     point = (_array(types.float64, 1), _array(types.int64, 1))
     space = (_array(types.float64, 2), _array(types.float64, 2))
+    normal = _array(types.float64, 1, readonly=True)
+    plane = (types.int64, normal, types.float64, types.float64)
+    find_free_time.compile((configuration, configuration, *plane, *known[:2]))
+    find_free_time.disable_compile()
     for function, own in (
         (find_suspects, (configurations,)),
         (search_motion, motion),

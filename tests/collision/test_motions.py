@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
+import coal
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -13,6 +14,7 @@ from mmplan.collision.checker import Checker
 from mmplan.collision.clear_cells import clear_cells
 from mmplan.collision.compiled_broadphase import CompiledBroadphase
 from mmplan.collision.pairs import CERTAIN
+from mmplan.collision.requests import PROVABLE
 from mmplan.problem import Obstacle
 from mmplan.robot_build import load_robot
 from mmplan.shapes import Array, Box
@@ -100,6 +102,60 @@ def test_no_pair_comes_nearer_faster_than_told(name: str, where: str) -> None:
                 tightest = min(tightest, (spare / (speed * np.diff(t) + 1e-9)).min())
     assert checked > 20
     assert tightest < 0.5  # the bound is of use
+
+
+@everywhere
+def test_no_pair_touches_within_the_time_told(name: str, where: str) -> None:
+    """Nor does it cross the plane that is between it at first."""
+    checker, _ = checkers(name, where)
+    motions = checker._motions
+    assert isinstance(motions, CompiledBroadphase)
+    checked, longer = 0, 0
+    for q, dq in zip(*edges(17), strict=True):
+        for pair, (mover, _) in motions._movers.items():
+            speed = float(motions._tables.own[mover] @ np.abs(dq))
+            if speed < 0.1 or not 1e-4 < distance(checker, q, pair) < 0.1:
+                continue
+            found = pin.computeDistance(checker._geometry, checker._geometry_data, pair)
+            gap, normal = found.min_distance - PROVABLE, found.normal
+            before, after = motions.free_times(pair, q, dq, normal, gap, speed)
+            assert min(before, after) >= gap / speed
+            checked += 1
+            longer += max(before, after) > 2.0 * gap / speed
+            for share in np.linspace(-min(before, 1.0), min(after, 1.0), 9):
+                assert along(checker, q + share * dq, pair, normal) >= 0.0
+    assert checked > 100
+    assert longer > checked / 4
+
+
+def along(checker: Checker, q: Array, pair: int, normal: Array) -> float:
+    """How far the bodies of a pair are apart along a direction, at q (nq,)."""
+    checker._place(q)
+    first, second = checker._pairs[pair].tolist()
+    shapes, poses = checker._geometry.geometryObjects, checker._geometry_data.oMg
+    nearest = [
+        normal @ poses[i].act(support(shapes[i].geometry, poses[i].rotation.T @ way))
+        for i, way in ((first, normal), (second, -normal))
+    ]
+    return float(nearest[1] - nearest[0])
+
+
+def support(shape: coal.ShapeBase, direction: Array) -> Array:
+    """The point of a body that is farthest in a direction, in the body's frame."""
+    if isinstance(shape, coal.ConvexBase):
+        points = shape.points()
+        farthest: Array = points[np.argmax(points @ direction)]
+        return farthest
+    if isinstance(shape, coal.Box):
+        return np.sign(direction) * shape.halfSide
+    if isinstance(shape, coal.Sphere):
+        return shape.radius * direction
+    up = np.sign(direction[2]) * np.array([0.0, 0.0, shape.halfLength])
+    if isinstance(shape, coal.Capsule):
+        return up + shape.radius * direction
+    assert isinstance(shape, coal.Cylinder)
+    beside = np.array([direction[0], direction[1], 0.0])
+    return up + shape.radius * beside / max(np.linalg.norm(beside), 1e-12)
 
 
 def distance(checker: Checker, q: Array, pair: int) -> float:
