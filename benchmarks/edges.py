@@ -3,9 +3,9 @@
     python benchmarks/edges.py [--problem cage/8 bookshelf_thin/6] [--seed 1]
 
 Plans a path for problems of MotionBenchMaker, keeps every question that OMPL asks, and
-asks them again in the order of layers: the whole question, what is left of it below
-OMPL's states, and so on down to the compiled function. CPU microseconds a question, the
-best of five rounds; needs the extra `fast`.
+asks them again in the order of layers: the whole question, what is left of it once
+OMPL's states are lists of coordinates, and the compiled function alone. CPU
+microseconds a question, the best of five rounds; needs the extra `fast`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import argparse
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from ompl import base as ob
@@ -22,7 +22,8 @@ from ompl import base as ob
 from mmplan.benchmarking.paths.arena import Arena, contestant, make_arena
 from mmplan.benchmarking.paths.planning import own_planner
 from mmplan.benchmarking.paths.problems import load_path_problems
-from mmplan.planning import PathChecker, state_space
+from mmplan.collision import kernels
+from mmplan.planning import state_space
 from mmplan.problem import PlannerSettings
 
 PROBLEMS = Path(__file__).parent / "data" / "panda_motionbenchmaker.json.gz"
@@ -83,9 +84,7 @@ def main() -> None:
     for name in options.problem:
         arena = make_arena(robot, problems[name])
         asked = recorded(arena, options.seed)
-        rows = [("edge", len(asked.motions), *row) for row in edge_layers(arena, asked)]
-        rows += [("state", len(asked.states), *x) for x in state_layers(arena, asked)]
-        for question, count, layer, seconds in rows:
+        for question, count, layer, seconds in edge_layers(asked) + state_layers(asked):
             print(f"| {name} | {question} | {count} | {layer} | {1e6 * seconds:.1f} |")
 
 
@@ -98,41 +97,81 @@ def recorded(arena: Arena, seed: int) -> Recorder:
     return recorder
 
 
-def edge_layers(arena: Arena, asked: Recorder) -> list[tuple[str, float]]:
-    """Seconds a whole edge by layers, each within the one before."""
-    checker: PathChecker = asked.motion_checker.answers.checker
-    states = asked.motion_checker.answers.states
+Row: TypeAlias = tuple[str, int, str, float]
+
+
+def edge_layers(asked: Recorder) -> list[Row]:
+    """Seconds a whole edge by layers, each within the one before.
+
+    Edges that compiled code settles, and those that are left to coal.
+    """
+    checker = asked.motion_checker
+    states, quick = checker.answers.states, _quick(asked)
     pairs = [(_filled(a), _filled(b)) for a, b in asked.motions]
-    ends = [(states.configuration(a), states.configuration(b)) for a, b in pairs]
-    moves = [(q, q_next - q) for q, q_next in ends]
-    steps = [(q, dq, int(checker.steps(dq))) for q, dq in moves]
-    world = arena.world
-    motions: Any = world._checker._motions
+    ends = [(states.coordinates(a) + states.coordinates(b),) for a, b in pairs]
+    verdicts = [quick.edge_free(*both) for both in ends]
+    settled = [k for k, verdict in enumerate(verdicts) if verdict is not None]
+    left = [k for k, verdict in enumerate(verdicts) if verdict is None]
+    known = (quick._places, quick._rows, quick._followers, quick._resolution)
+    arrays = [(np.array(*ends[k]), *known, *quick._broadphase.known) for k in settled]
+    one, other = "edge", "edge left to coal"
     return [
-        ("OMPL's question", _each(asked.motion_checker.checkMotion, pairs)),
-        ("of configurations", _each(checker.edge_free, ends)),
-        ("of steps", _each(world.steps_collide, steps)),
-        ("without coal", _each(motions.on_steps, steps)),
-        ("compiled", _each(motions._follow, steps)),
+        (
+            one,
+            len(settled),
+            *_layer("OMPL's question", checker.checkMotion, pairs, settled),
+        ),
+        (
+            one,
+            len(settled),
+            *_layer("from coordinates on", quick.edge_free, ends, settled),
+        ),
+        (one, len(settled), "compiled", _each(kernels.check_edge, arrays)),
+        (
+            other,
+            len(left),
+            *_layer("OMPL's question", checker.checkMotion, pairs, left),
+        ),
+        (other, len(left), *_layer("from coordinates on", quick.edge_free, ends, left)),
     ]
 
 
-def state_layers(arena: Arena, asked: Recorder) -> list[tuple[str, float]]:
-    """The same for single states."""
-    checker: PathChecker = asked.state_checker.answers.checker
-    states = asked.state_checker.answers.states
-    asked_states = [(_filled(values),) for values in asked.states]
-    single = [(states.configuration(s)[None],) for (s,) in asked_states]
-    motions: Any = arena.world._checker._motions
+def state_layers(asked: Recorder) -> list[Row]:
+    """The same for single states, all of them."""
+    checker = asked.state_checker
+    quick = _quick(asked)
+    states = [(_filled(values),) for values in asked.states]
+    points = [(checker.answers.states.coordinates(state),) for (state,) in states]
+    known = (quick._places, quick._rows, quick._followers, *quick._broadphase.known)
+    arrays = [(np.array(*point), *known) for point in points]
+    count = len(states)
     return [
-        ("OMPL's question", _each(asked.state_checker.isValid, asked_states)),
-        ("of configurations", _each(checker.states_free, single)),
-        ("compiled", _each(motions._likeliest, [(q, 0) for (q,) in single])),
+        ("state", count, "OMPL's question", _each(checker.isValid, states)),
+        ("state", count, "from coordinates on", _each(quick.state_free, points)),
+        ("state", count, "compiled", _each(kernels.check_state, arrays)),
     ]
+
+
+def _quick(asked: Recorder) -> Any:
+    """The compiled answers, which there are after the first question."""
+    answers = asked.motion_checker.answers
+    answers.state_free(_filled(asked.states[0]))
+    return answers._quick
+
+
+def _layer(
+    name: str,
+    ask: Callable[..., object],
+    questions: Sequence[tuple[Any, ...]],
+    chosen: Sequence[int],
+) -> tuple[str, float]:
+    return name, _each(ask, [questions[k] for k in chosen])
 
 
 def _each(ask: Callable[..., object], questions: Sequence[tuple[Any, ...]]) -> float:
     """CPU s a question, the best of some rounds over all."""
+    if not questions:
+        return np.nan
     best = np.inf
     for _ in range(ROUNDS):
         begin = time.process_time()

@@ -97,7 +97,3 @@ def _report_error(error: MmplanError, *, as_json: bool) -> int:
         faults = [asdict(d) for d in error.diagnostics]
         print_json({"solved": False, "faults": faults})
     return BAD_INPUT if isinstance(error, InputError) else NO_PLAN
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -24,7 +24,7 @@ from mmplan.plan_file import plan_schema
 from mmplan.terminal import progress_display
 from tests.tabletop import cup_scene
 
-COMMAND = (sys.executable, "-m", "mmplan.cli")
+COMMAND = (sys.executable, "-m", "mmplan")
 FAULTY = Path(__file__).parent / "faulty"
 CORPUS = sorted(FAULTY.rglob("*.yaml"))
 

@@ -16,7 +16,7 @@ from mmplan.benchmarking.store import STORE_FILE, ProblemEntry
 from tests.tabletop import cup_scene
 
 CONVERTER = Path(sys.executable).parent / "ompl_benchmark_statistics"
-COMMAND = (sys.executable, "-m", "mmplan.cli", "benchmark")
+COMMAND = (sys.executable, "-m", "mmplan", "benchmark")
 # Populations so small that a few evaluations are several cycles.
 SMALL = "{bases: 6, grasps: 6, partners: 2}"
 

@@ -49,3 +49,17 @@ def test_one_version_is_compiled_for_all_arrays() -> None:
     assert checker.any_collision(frozen[None]) == checker.any_collision(q[None])
     assert len(kernels.search_motion.signatures) == 1
     assert len(kernels.find_suspects.signatures) == 1
+
+
+def test_tables_fill_the_arrays_that_hold_them() -> None:
+    sizes = kernels.Sizes(joints=3, nq=4, moving=5, static=6, pairs=7, balls=2)
+    numbers, integers = (np.zeros(n) for n in kernels.needed(sizes))
+    integers = integers.astype(np.int64)
+    integers[: len(sizes)] = sizes
+    views = kernels.tables(numbers, integers)
+    assert views.basis.shape == (3, 4, 3, 4)
+    assert views.pairs.shape == (7, 4)
+    for view in views:
+        view[...] += 1
+    assert np.all(numbers == 1.0)
+    assert np.all(integers[len(sizes) + 1 :] == 1)
