@@ -109,11 +109,12 @@ def edge_layers(asked: Recorder) -> list[Row]:
     states, quick = checker.answers.states, _quick(asked)
     pairs = [(_filled(a), _filled(b)) for a, b in asked.motions]
     ends = [(states.coordinates(a) + states.coordinates(b),) for a, b in pairs]
-    verdicts = [quick.edge_free(*both) for both in ends]
-    settled = [k for k, verdict in enumerate(verdicts) if verdict is not None]
-    left = [k for k, verdict in enumerate(verdicts) if verdict is None]
     known = (quick._places, quick._rows, quick._followers, quick._resolution)
-    arrays = [(np.array(*ends[k]), *known, *quick._broadphase.known) for k in settled]
+    room = (quick._q, quick._dq, *quick._broadphase.known)
+    arrays = [(np.array(*both), *known, *room) for both in ends]
+    found = [kernels.check_edge(*array) for array in arrays]
+    settled = [k for k, count in enumerate(found) if count <= 0]
+    left = [k for k, count in enumerate(found) if count > 0]
     one, other = "edge", "edge left to coal"
     return [
         (
@@ -126,13 +127,14 @@ def edge_layers(asked: Recorder) -> list[Row]:
             len(settled),
             *_layer("from coordinates on", quick.edge_free, ends, settled),
         ),
-        (one, len(settled), "compiled", _each(kernels.check_edge, arrays)),
+        (one, len(settled), *_layer("compiled", kernels.check_edge, arrays, settled)),
         (
             other,
             len(left),
             *_layer("OMPL's question", checker.checkMotion, pairs, left),
         ),
         (other, len(left), *_layer("from coordinates on", quick.edge_free, ends, left)),
+        (other, len(left), *_layer("compiled", kernels.check_edge, arrays, left)),
     ]
 
 
@@ -142,8 +144,8 @@ def state_layers(asked: Recorder) -> list[Row]:
     quick = _quick(asked)
     states = [(_filled(values),) for values in asked.states]
     points = [(checker.answers.states.coordinates(state),) for (state,) in states]
-    known = (quick._places, quick._rows, quick._followers, *quick._broadphase.known)
-    arrays = [(np.array(*point), *known) for point in points]
+    known = (quick._places, quick._rows, quick._followers, quick._row)
+    arrays = [(np.array(*p), *known, *quick._broadphase.known) for p in points]
     count = len(states)
     return [
         ("state", count, "OMPL's question", _each(checker.isValid, states)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -80,7 +80,9 @@ class Checker:
 
     def in_space(self, space: PlannerSpace) -> CompiledSpace | None:
         """Compiled answers to questions in a planner's coordinates, where there are."""
-        return None if self._compiled is None else self._compiled.in_space(space)
+        if self._compiled is None:
+            return None
+        return self._compiled.in_space(space, self.any_touches)
 
     def _learn_what_is_known(self, motions: CompiledBroadphase) -> None:
         made = clear_cells_made(self._robot)
@@ -110,26 +112,27 @@ class Checker:
         """Whether any of the configurations (n, nq) is in collision."""
         few = len(q) <= _FEW and self._compiled is not None
         broadphase = self._motions if few else self._broadphase
-        placed = -1
-        for row, pair in broadphase.likeliest(q):
-            if pair == CERTAIN:
-                return True
-            if row != placed:
-                self._place(q[row])
-                placed = row
-            if self._touches(pair):
-                return True
-        return False
+        return self.any_touches(broadphase.likeliest(q), lambda row: q[row])
 
     def steps_collide(self, q: Array, dq: Array, steps: int) -> bool:
         """Whether any of q + k / steps · dq (nq,), k = 1, ..., steps, collides."""
+        finds = self._motions.on_steps(q, dq, steps)
+        return self.any_touches(finds, lambda k: q + (k / steps) * dq)
+
+    def any_touches(
+        self, finds: Iterable[tuple[int, int]], configuration: Callable[[int], Array]
+    ) -> bool:
+        """Whether any of some finds collides: number of a configuration, and pair.
+
+        `configuration` gives that of a number, (nq,).
+        """
         placed = -1
-        for k, pair in self._motions.on_steps(q, dq, steps):
+        for number, pair in finds:
             if pair == CERTAIN:
                 return True
-            if k != placed:
-                self._place(q + (k / steps) * dq)
-                placed = k
+            if number != placed:
+                self._place(configuration(number))
+                placed = number
             if self._touches(pair):
                 return True
         return False

@@ -17,7 +17,7 @@ from mmplan.collision import kernels
 from mmplan.collision.assembly import Body
 from mmplan.collision.bounds import Bounds, local_bounds
 from mmplan.collision.clear_cells import ClearCells
-from mmplan.collision.compiled_space import CompiledSpace
+from mmplan.collision.compiled_space import CompiledSpace, Judge
 from mmplan.collision.cores import BALLS, core_of
 from mmplan.collision.levers import body_levers, pair_levers
 from mmplan.collision.pairs import (
@@ -116,7 +116,7 @@ class CompiledBroadphase:
         At q + k / steps · dq (nq,), k = 1, ..., steps. `CERTAIN` as in `likeliest`.
         """
         count = self._follow(q, dq, steps)
-        return [(k, pair) for pair, k, _ in self._deepest_first(count)]
+        return [(k, pair) for pair, k, _ in self.deepest_first(count)]
 
     def on_the_way(self, q: Array, dq: Array) -> list[Stretch]:
         """Where pairs may touch on the way from q (nq,) to q + dq.
@@ -154,9 +154,9 @@ class CompiledBroadphase:
         )
         return times
 
-    def in_space(self, space: PlannerSpace) -> CompiledSpace:
-        """The same for questions in a planner's coordinates."""
-        return CompiledSpace(self, space)
+    def in_space(self, space: PlannerSpace, judge: Judge) -> CompiledSpace:
+        """Answers in a planner's coordinates; the judge tells which finds collide."""
+        return CompiledSpace(self, space, judge)
 
     def learn(self, pair: int, known: ClearCells) -> None:
         """Leave a pair of moving bodies out wherever it is known to be apart."""
@@ -171,19 +171,19 @@ class CompiledBroadphase:
     def _likeliest(self, q: Array, first: int) -> list[tuple[int, int]]:
         """The same as `likeliest` for a few configurations, the first of which is."""
         count = kernels.find_suspects(q, *self.known)
-        if not self._had_room(count):
+        if not self.had_room(count):
             return self._likeliest(q, first)
-        return [(row + first, pair) for row, pair, _ in self._deepest_first(count)]
+        return [(row + first, pair) for row, pair, _ in self.deepest_first(count)]
 
     def _follow(self, q: Array, dq: Array, steps: int) -> int:
         """How much `kernels.search_motion` finds and leaves in the room for it."""
         count: int = kernels.search_motion(q, dq, steps, _SMALLEST, *self.known)
-        if not self._had_room(count):
+        if not self.had_room(count):
             return self._follow(q, dq, steps)
         return count
 
-    def _deepest_first(self, count: int) -> list[list[int]]:
-        """So many finds as lists, those whose boxes overlap the most first."""
+    def deepest_first(self, count: int) -> list[list[int]]:
+        """The finds of a kernel that returned a count, most overlap of boxes first."""
         if count == CERTAIN:
             return [[CERTAIN] * 3]
         if count == 0:
@@ -195,7 +195,7 @@ class CompiledBroadphase:
         finds: list[list[int]] = found.tolist()
         return finds
 
-    def _had_room(self, count: int) -> bool:
+    def had_room(self, count: int) -> bool:
         """Whether that many finds fitted in; if not, there is room now."""
         if count <= len(self.known[-1]):
             return True

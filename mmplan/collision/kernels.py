@@ -446,14 +446,17 @@ def check_state(
     places: Indices,
     space: Array,
     followers: Array,
+    q: Array,
     numbers: Array,
     integers: Indices,
     clear: Flags,
     found: Indices,
     depth: Array,
 ) -> int:
-    """What `find_suspects` says of one point of a planner's space; see `check_edge`."""
-    q = np.empty((1, space.shape[1]))
+    """What `find_suspects` says of one point of a planner's space; see `check_edge`.
+
+    Sets q (1, nq) to its configuration.
+    """
     _configure(point, 0, places, space, followers, q[0])
     return find_suspects(q, numbers, integers, clear, found, depth)
 
@@ -465,6 +468,8 @@ def check_edge(
     space: Array,
     followers: Array,
     resolution: float,
+    q: Array,
+    dq: Array,
     numbers: Array,
     integers: Indices,
     clear: Flags,
@@ -473,6 +478,8 @@ def check_edge(
 ) -> int:
     """What `search_motion` says of the steps of an edge in a planner's space.
 
+    Sets q (nq,) to the configuration where it begins and dq (nq,) to the way on.
+
     Args:
         ends: The coordinates of both ends, (2 k,).
         places: Where in q coordinates belong, (k,).
@@ -480,6 +487,8 @@ def check_edge(
             joints that wrap, then lever arms: see `Sweep`; (3 + rows, nq).
         followers: Place, leader's place, multiplier and offset of those, (f, 4).
         resolution: How far any point may move between two steps, m.
+        q: See above.
+        dq: See above.
         numbers: See the module.
         integers: See the module.
         clear: See the module.
@@ -487,7 +496,6 @@ def check_edge(
         depth: See the module.
     """
     nq = space.shape[1]
-    q, dq = np.empty(nq), np.empty(nq)
     _configure(ends, 0, places, space, followers, q)
     _configure(ends, len(places), places, space, followers, dq)
     for k in range(nq):
@@ -828,8 +836,8 @@ def _compile() -> None:
     for function, own in (
         (find_suspects, (configurations,)),
         (search_motion, motion),
-        (check_state, (*point, *space)),
-        (check_edge, (*point, *space, types.float64)),
+        (check_state, (*point, *space, _array(types.float64, 2))),
+        (check_edge, (*point, *space, types.float64, *point[:1], *point[:1])),
     ):
         function.compile((*own, *known, *finds))
         function.disable_compile()

@@ -128,8 +128,8 @@ def _as_slice(places: npt.NDArray[np.int64]) -> slice | npt.NDArray[np.int64]:
 class Answers:
     """Answers to OMPL's questions from a world.
 
-    Most are settled in compiled code, where there is such, before OMPL's states are put
-    in configurations.
+    From compiled code, where there is such, without that OMPL's states are put in
+    configurations.
     """
 
     def __init__(self, states: ScaledStates, checker: PathChecker) -> None:
@@ -143,27 +143,24 @@ class Answers:
         """Whether one state is free of collision."""
         states, checker = self.states, self.checker
         quick = self._quick = self._quick or checker.in_space(self._space)
-        if quick is not None:
-            free = quick.state_free(states.coordinates(state))
-            if free is not None:
-                checker.states += 1
-                return free
-        return checker.states_free(states.configuration(state)[None])
+        if quick is None:
+            return checker.states_free(states.configuration(state)[None])
+        checker.states += 1
+        return quick.state_free(states.coordinates(state))
 
     def edge_free(self, start: ob.State, end: ob.State) -> bool:
         """Whether a whole edge is free of collision, its start taken as checked."""
         states, checker = self.states, self.checker
         quick = self._quick = self._quick or checker.in_space(self._space)
-        if quick is not None and not checker.continuous:
-            free = quick.edge_free(states.coordinates(start) + states.coordinates(end))
-            if free is not None:
-                checker.edges += 1
-                checker.states += quick.steps
-                return free
-        q_from, q_to = states.configuration(start), states.configuration(end)
-        if states.metric.any_wraps:
-            q_to = q_to + states.metric.turns(q_to, q_from)
-        return checker.edge_free(q_from, q_to)
+        if quick is None or checker.continuous:
+            q_from, q_to = states.configuration(start), states.configuration(end)
+            if states.metric.any_wraps:
+                q_to = q_to + states.metric.turns(q_to, q_from)
+            return checker.edge_free(q_from, q_to)
+        free = quick.edge_free(states.coordinates(start) + states.coordinates(end))
+        checker.edges += 1
+        checker.states += quick.steps
+        return free
 
 
 class WorldValidity(ob.StateValidityChecker):

@@ -55,13 +55,13 @@ class PlanningWorld(Protocol):
 
 
 class QuickAnswers(Protocol):
-    """Which points and edges of a planner's space are free, where that is told soon."""
+    """Which points and edges of a planner's space are free."""
 
-    def state_free(self, point: list[float]) -> bool | None:
-        """Whether a point (k,) is free, if that is settled."""
+    def state_free(self, point: list[float]) -> bool:
+        """Whether a point (k,) is free."""
 
-    def edge_free(self, ends: list[float]) -> bool | None:
-        """Whether all steps of an edge are free, if settled; both ends, (2 k,)."""
+    def edge_free(self, ends: list[float]) -> bool:
+        """Whether all steps of an edge are free; both ends, (2 k,)."""
 
     @property
     def steps(self) -> int:

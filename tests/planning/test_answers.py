@@ -86,15 +86,6 @@ def test_edges_are_free_or_not_in_both_ways(name: str) -> None:
     )
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_much_is_settled_without_coal(name: str) -> None:
-    quick, _, states = asked(name)
-    assert quick._quick is not None
-    points = [quick.states.coordinates(state) for state in states]
-    settled = sum(quick._quick.state_free(point) is not None for point in points)
-    assert STATES / 10 < settled < STATES
-
-
 def test_edges_go_the_short_way_round() -> None:
     """Across the place where a heading begins anew."""
     quick, slow, _ = asked("tiago_shelf")
