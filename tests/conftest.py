@@ -2,6 +2,7 @@
 
 import ctypes.util
 import os
+import signal
 
 from hypothesis import settings
 
@@ -14,3 +15,7 @@ settings.load_profile("mmplan")
 # draws nothing: without a window, for those that do.
 if ctypes.util.find_library("EGL"):
     os.environ.setdefault("MUJOCO_GL", "egl")
+
+# What a shell runs in the background is deaf to interrupts, and would hand that on to
+# the commands that tests start and interrupt.
+signal.signal(signal.SIGINT, signal.default_int_handler)
