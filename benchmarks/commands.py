@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-MMPLAN = [sys.executable, "-m", "mmplan.cli"]
+MMPLAN = [sys.executable, "-m", "mmplan"]
 FAULTY = "mmplan: 1\nname: faulty\nrobot: {model: puma_mobil}\nobstacle: {}\n"
 
 

@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import mmplan
 
-MMPLAN = [sys.executable, "-m", "mmplan.cli"]
+MMPLAN = [sys.executable, "-m", "mmplan"]
 SEED = 7
 VIDEO = "plan.mp4"
 FILES = {

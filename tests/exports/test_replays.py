@@ -57,7 +57,7 @@ def in_mujoco(solved: Solved, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("mujoco")
     scene = folder / "scene.xml"
     assert main(["export", str(solved.path), "--to", "mjcf", "-o", str(scene)]) == 0
-    command = [sys.executable, "-m", "mmplan.cli", "robot", "urdf", "puma_mobile"]
+    command = [sys.executable, "-m", "mmplan", "robot", "urdf", "puma_mobile"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     (folder / "robot.urdf").write_text(done.stdout)
     (folder / "plan.json").write_text(solved.path.read_text())

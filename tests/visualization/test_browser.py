@@ -222,7 +222,7 @@ SLIDE = """(value) => {
 def live(plan_file: Path) -> Iterator[str]:
     """The address of a live viewer of the plan."""
     with subprocess.Popen(
-        [sys.executable, "-m", "mmplan.cli", "view", str(plan_file), "--port", "8200"],
+        [sys.executable, "-m", "mmplan", "view", str(plan_file), "--port", "8200"],
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         text=True,

@@ -15,7 +15,7 @@ import pytest
 from mmplan.cli import main
 from tests.tabletop import SCENE, cup_scene
 
-COMMAND = (sys.executable, "-m", "mmplan.cli")
+COMMAND = (sys.executable, "-m", "mmplan")
 
 
 @pytest.mark.parametrize("subject", ["plan", "scene"])
