@@ -59,33 +59,22 @@ class CompiledBroadphase:
         paired = sorted(set(pairs.ravel().tolist()))
         moving = [i for i in paired if bodies[i].joint != 0]
         static = [i for i in paired if bodies[i].joint == 0]
-        padding = _PADDING + distance_to_keep(allowed_depth)
-        joints = model.njoints - 1
         sizes = kernels.Sizes(
-            joints, model.nq, len(moving), len(static), len(pairs), BALLS
+            model.njoints - 1, model.nq, len(moving), len(static), len(pairs), BALLS
         )
         numbers, integers = kernels.needed(sizes)
         self._numbers, self._integers = np.zeros(numbers), np.zeros(integers, np.int64)
         self._integers[: len(sizes)] = sizes
         self._tables = kernels.tables(self._numbers, self._integers)
-        kinematics = ForwardKinematics(model)
-        known = self._tables
-        known.basis[:], known.tree[:] = kinematics.basis, kinematics.tree
-        known.axes[:] = _axes(model)
-        known.moving[:] = _boxes(geometry, moving, padding)
-        known.static[:] = _boxes(geometry, static, _PADDING)
-        known.upright[:] = _upright(known.static)
-        known.balls[:] = _balls(geometry, moving)
-        known.cores[:] = _cores(geometry, static)
-        known.surely[:] = allowed_depth + _SURE
-        known.own[:] = body_levers(model, geometry, moving)
-        known.levers[:] = pair_levers(model, geometry, pairs)
-        known.joint[:] = [bodies[i].joint for i in moving]
-        known.pairs[:] = _table(moving, static, pairs)
-        known.T[0] = np.eye(3, 4)
+        _fill_with_joints(self._tables, model)
+        _fill_with_bodies(self._tables, geometry, moving, static, allowed_depth)
+        self._tables.own[:] = body_levers(model, geometry, moving)
+        self._tables.levers[:] = pair_levers(model, geometry, pairs)
+        self._tables.joint[:] = [bodies[i].joint for i in moving]
+        self._tables.pairs[:] = _table(moving, static, pairs)
         self._movers = {
             k: (mover, 1.0 if bodies[pairs[k, 0]].joint == 0 else -1.0)
-            for k, mover, _, kind in known.pairs.tolist()
+            for k, mover, _, kind in self._tables.pairs.tolist()
             if kind == kernels.STATIC
         }
         self._clear = np.empty((0, 1, 1), dtype=np.bool_)
@@ -201,6 +190,29 @@ class CompiledBroadphase:
             return True
         self._make_room(2 * count)
         return False
+
+
+def _fill_with_joints(tables: kernels.Tables, model: pin.Model) -> None:
+    kinematics = ForwardKinematics(model)
+    tables.basis[:], tables.tree[:] = kinematics.basis, kinematics.tree
+    tables.axes[:] = _axes(model)
+    tables.T[0] = np.eye(3, 4)
+
+
+def _fill_with_bodies(
+    tables: kernels.Tables,
+    geometry: pin.GeometryModel,
+    moving: list[int],
+    static: list[int],
+    allowed_depth: Array,
+) -> None:
+    padding = _PADDING + distance_to_keep(allowed_depth)
+    tables.moving[:] = _boxes(geometry, moving, padding)
+    tables.static[:] = _boxes(geometry, static, _PADDING)
+    tables.upright[:] = _upright(tables.static)
+    tables.balls[:] = _balls(geometry, moving)
+    tables.cores[:] = _cores(geometry, static)
+    tables.surely[:] = allowed_depth + _SURE
 
 
 def _axes(model: pin.Model) -> Array:
