@@ -204,9 +204,14 @@ class CollisionWorld:
         """Whether any of q + k / steps · dq (nq,), k = 1, ..., steps, collides."""
         return self._checker.steps_collide(q, dq, steps)
 
-    def motion_collides(self, q: Array, dq: Array) -> bool:
-        """Whether anything collides anywhere on the way from q (nq,) to q + dq."""
-        return self._checker.motion_collides(q, dq)
+    def motion_collides(
+        self, q: Array, dq: Array, *, likely_free: bool = False
+    ) -> bool:
+        """Whether anything collides anywhere on the way from q (nq,) to q + dq.
+
+        If the way is `likely_free`, that is told sooner, and that it is not, later.
+        """
+        return self._checker.motion_collides(q, dq, likely_free=likely_free)
 
     def in_space(self, space: PlannerSpace) -> CompiledSpace | None:
         """Quick answers to questions in a planner's coordinates, where there are."""

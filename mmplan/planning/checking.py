@@ -65,14 +65,17 @@ class PathChecker:
             return None
         return int(np.argmax(self.world.in_collision(q)))
 
-    def edge_free(self, q_from: Array, q_to: Array) -> bool:
-        """Whether an edge is free of collision, its first end taken as checked."""
+    def edge_free(self, q_from: Array, q_to: Array, *, likely: bool = False) -> bool:
+        """Whether an edge is free of collision, its first end taken as checked.
+
+        If that is likely, as where a coarser checker found it free, it is told sooner.
+        """
         dq = q_to - q_from
         self.edges += 1
         if self._moving is not None and self.continuous:
             if self._moving is not self.world and not self._steps_free(q_from, dq):
                 return False
-            return not self._moving.motion_collides(q_from, dq)
+            return not self._moving.motion_collides(q_from, dq, likely_free=likely)
         return self._steps_free(q_from, dq)
 
     def _steps_free(self, q: Array, dq: Array) -> bool:

@@ -18,6 +18,8 @@ from mmplan.shapes import Array
 
 # So many iterations are spent on the way around an edge that collides after all.
 _MENDING = 200
+# Ways whose directions, unit vectors, differ by no more are one.
+_STRAIGHT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +60,7 @@ class PathFinder:
         parts = [path[:1]]
         for i, (q_from, q_to) in enumerate(pairwise(path), start=1):
             around: Array | None = path[i - 1 : i + 1]
-            if not checker.edge_free(q_from, q_to):
+            if not checker.edge_free(q_from, q_to, likely=True):
                 _, around = soon._look(checker, q_from, q_to[None])
             if around is None:
                 return None
@@ -75,7 +77,8 @@ class PathFinder:
             return found, None
         metric = Metric.of_joints(self.joints, checker.sweep.weights)
         path = metric.unwrapped(np.vstack([q_start, found.waypoints[1:]]))
-        return found, _with_exact_end(path, metric, q_goals)
+        path = _with_exact_end(path, metric, q_goals)
+        return found, _without_halts(path)
 
     def _search(self, checker: PathChecker, q_start: Array, q_goals: Array) -> Search:
         """By the planner wanted; where an object is kept upright, by our own."""
@@ -92,3 +95,16 @@ def _with_exact_end(path: Array, metric: Metric, q_goals: Array) -> Array:
     q_goals = q_goals + metric.turns(q_goals, path[-1])
     off = np.abs(q_goals - path[-1]).max(axis=1)
     return np.vstack([path[:-1], q_goals[np.argmin(off)]])
+
+
+def _without_halts(path: Array) -> Array:
+    """The path (n, nq) less the waypoints at which it goes straight on.
+
+    Planners make a long way in steps of their range; it is proven sooner as one edge.
+    """
+    ways = np.diff(path, axis=0)
+    lengths = np.linalg.norm(ways, axis=1)
+    headings = ways / np.where(lengths > 0.0, lengths, 1.0)[:, None]
+    turns = np.abs(np.diff(headings, axis=0)).max(axis=1, initial=0.0) > _STRAIGHT
+    kept: Array = path[np.concatenate([[True], turns, [True]])]
+    return kept

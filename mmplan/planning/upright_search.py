@@ -177,7 +177,8 @@ class UprightSearch:
         if blocked is not None:
             path = path[: blocked[0] + 1]
         if self._checker.continuous:
-            free = [self._checker.edge_free(*edge) for edge in pairwise(path)]
+            edges = pairwise(path)
+            free = [self._checker.edge_free(*edge, likely=True) for edge in edges]
             path = path[: free.index(False) + 1] if False in free else path
         return path[1:]
 

@@ -75,8 +75,10 @@ class MovingWorld(PlanningWorld, Protocol):
     def steps_collide(self, q: Array, dq: Array, steps: int) -> bool:
         """Whether any of q + k / steps · dq, k = 1, ..., steps, is in collision."""
 
-    def motion_collides(self, q: Array, dq: Array) -> bool:
-        """Whether anything collides on the way."""
+    def motion_collides(
+        self, q: Array, dq: Array, *, likely_free: bool = False
+    ) -> bool:
+        """Whether anything collides on the way; a likely answer is told sooner."""
 
     def in_space(self, space: PlannerSpace) -> QuickAnswers | None:
         """Quick answers to questions in a planner's coordinates, where there are."""

@@ -17,6 +17,7 @@ from mmplan.planning import (
     path_finder,
     plan_path,
 )
+from mmplan.planning.metric import Metric
 from mmplan.planning.search import Search
 from mmplan.problem import Obstacle, PlannerSettings
 from mmplan.shapes import Array, Box
@@ -103,6 +104,33 @@ def test_where_mending_fails_all_is_searched_anew(
         for q, q_next in pairwise(result.path):
             assert not world.motion_collides(q, q_next - q)
     assert again > 0
+
+
+def test_straight_ways_are_one_edge() -> None:
+    """Of steps that go straight on no waypoints are left."""
+    world = wall(door=1.0)
+    joints = joints_of(world)
+    q_from, q_to = q_tucked(-1.2, 1.0), q_tucked(1.2, 1.0)
+    finder = path_finder.PathFinder(joints, replace(SETTINGS, range=0.1), 3)
+    checker = PathChecker(world, SETTINGS.resolution)
+    found, path = finder.find(checker, q_from, q_to[None])
+    assert path is not None
+    assert found.waypoints is not None
+    assert 2 < len(path) < len(found.waypoints)
+    ways = np.diff(path, axis=0)
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    assert np.all(np.sum(ways[1:] * ways[:-1], axis=1) < 1.0 - 1e-15)
+    # Every waypoint that the planner went through lies on one of the edges.
+    metric = Metric.of_joints(joints, checker.sweep.weights)
+    through = metric.unwrapped(np.vstack([q_from, found.waypoints[1:]]))
+    edges = list(pairwise(path))
+    assert all(any(between(q, *edge) for edge in edges) for q in through)
+
+
+def between(q: Array, q_from: Array, q_to: Array) -> bool:
+    """Whether q is on the straight line between two others."""
+    lengths = (np.linalg.norm(b - a) for a, b in ((q_from, q), (q, q_to)))
+    return bool(sum(lengths) < np.linalg.norm(q_to - q_from) + 1e-9)
 
 
 def test_no_way_is_found_through_a_closed_sheet() -> None:
