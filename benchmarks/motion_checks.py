@@ -1,13 +1,14 @@
 """How motions are checked: whether all ways agree, and what each costs.
 
-    python benchmarks/motion_checks.py [SCENE ...] [--edges 800] [--plain]
+    python benchmarks/motion_checks.py [SCENE ...] [--edges 800] [--plain] [--threads 2]
 
 For every scene (by default each that is shipped) random edges from configurations that
 are free of collision, checked four ways: at single configurations; as one question
 about the same steps; as steps a tenth as long; and continuously. The first two must
 agree on every edge, and no edge that collides in steps may be free continuously. Times
 are CPU microseconds an edge. `--plain` does without numba; the digest is that of all
-answers and must be the same.
+answers and must be the same. So it must with `--threads`: each then checks a share of
+the edges in a world of its own, and times are those on the clock.
 """
 
 from __future__ import annotations
@@ -17,8 +18,13 @@ import hashlib
 import sys
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from mmplan.collision import CollisionWorld
 
 STEP = 0.02  # m, that no point of the robot exceeds between two checks
 LENGTHS = (0.05, 1.0)  # m, of edges, weighted by lever arms
@@ -32,6 +38,7 @@ def main() -> None:
     parser.add_argument("scenes", nargs="*")
     parser.add_argument("--edges", type=int, default=800)
     parser.add_argument("--plain", action="store_true")
+    parser.add_argument("--threads", type=int)
     options = parser.parse_args()
     if options.plain:
         sys.modules["numba"] = None  # type: ignore[assignment]
@@ -48,11 +55,11 @@ def main() -> None:
     )
     print("|" + " --- |" * 10)
     for name in options.scenes or assets.scene_names():
-        print(row(name, options.edges, digest), flush=True)
+        print(row(name, options.edges, options.threads, digest), flush=True)
     print(f"digest {digest.hexdigest()[:16]}")
 
 
-def row(name: str, count: int, digest: hashlib._Hash) -> str:
+def row(name: str, count: int, threads: int | None, digest: hashlib._Hash) -> str:
     """Check the edges of a scene in all ways."""
     from mmplan.collision import CollisionWorld
     from mmplan.planning import PathChecker
@@ -78,20 +85,33 @@ def row(name: str, count: int, digest: hashlib._Hash) -> str:
     dq *= rng.uniform(*LENGTHS, (len(q), 1)) / ways
     steps = checker.steps(dq).tolist()
 
-    def asked(ask: Callable[[int], bool]) -> tuple[np.ndarray, float]:
-        ask(0)
-        begin = time.process_time()
-        answers = np.array([ask(i) for i in range(len(q))])
-        return answers, (time.process_time() - begin) / len(q) * 1e6
+    worlds = [
+        world,
+        *(CollisionWorld.of_problem(problem) for _ in range(1, threads or 1)),
+    ]
+    shares = np.array_split(np.arange(len(q)), len(worlds))
+    clock = time.process_time if threads is None else time.perf_counter
 
-    def single(i: int) -> bool:
+    def asked(
+        ask: Callable[[CollisionWorld, int], bool],
+    ) -> tuple[np.ndarray, float]:
+        def share_of(world: CollisionWorld, share: np.ndarray) -> list[bool]:
+            return [ask(world, i) for i in share.tolist()]
+
+        with ThreadPoolExecutor(len(worlds)) as pool:
+            list(pool.map(share_of, worlds, [share[:1] for share in shares]))
+            begin = clock()
+            answers = np.concatenate(list(pool.map(share_of, worlds, shares)))
+            return answers, (clock() - begin) / len(q) * 1e6
+
+    def single(world: CollisionWorld, i: int) -> bool:
         fractions = np.arange(1, steps[i] + 1)[:, None] / steps[i]
         return bool(world.in_collision(q[i] + fractions * dq[i]).any())
 
     states, states_us = asked(single)
-    edges, edges_us = asked(lambda i: world.steps_collide(q[i], dq[i], steps[i]))
-    fine, _ = asked(lambda i: world.steps_collide(q[i], dq[i], 10 * steps[i]))
-    whole, whole_us = asked(lambda i: world.motion_collides(q[i], dq[i]))
+    edges, edges_us = asked(lambda w, i: w.steps_collide(q[i], dq[i], steps[i]))
+    fine, _ = asked(lambda w, i: w.steps_collide(q[i], dq[i], 10 * steps[i]))
+    whole, whole_us = asked(lambda w, i: w.motion_collides(q[i], dq[i]))
     for answers in (states, edges, fine, whole):
         digest.update(answers.tobytes())
     cells = [name, len(world.pairs), len(q), f"{edges.mean():.0%}"]
