@@ -112,11 +112,14 @@ class _FileSection(Section):
 
 
 def load_path_problems(path: Path) -> PathProblems:
-    """Read a file of problems.
+    """Read a file of problems; of one that is packed, `.gz` may be left away.
 
     Raises:
         InputError: It cannot be read, or is faulty, with the place of every fault.
     """
+    packed = path.with_name(f"{path.name}.gz")
+    if packed.exists() and not path.exists():
+        path = packed
     content = _content(path)
     section = _validated(path, content)
     problems = [

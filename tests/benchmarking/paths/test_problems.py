@@ -38,6 +38,8 @@ def test_packed_and_plain_files_are_the_same(tmp_path: Path) -> None:
     first, second = load_path_problems(plain), load_path_problems(packed)
     assert (first.name, first.fingerprint) == (second.name, second.fingerprint)
     np.testing.assert_array_equal(first.problems[0].q_goal, second.problems[0].q_goal)
+    plain.unlink()
+    assert load_path_problems(plain).path == packed
 
 
 def test_shapes_and_their_sizes(tmp_path: Path) -> None:
