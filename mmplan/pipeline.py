@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Protocol
 
@@ -114,34 +115,43 @@ def plan_candidates(
 ) -> tuple[Plan | None, tuple[Attempt, ...]]:
     """The verified plan of the best candidate that has one, and the failures before.
 
-    `seed` is what the plan says that it was made from. If all fail, and some at a
-    straight motion that the scene does not insist on, such motions may be left out.
+    `seed` is what the plan says that it was made from. If all fail, those that do so at
+    a straight motion that the scene does not insist on are tried without such motions.
     """
-    attempts: list[Attempt] = []
+    failed: dict[int, Attempt] = {}
+    numbers = list(range(len(found.candidates)))
     for without_lines in (False, True):
         motion = TaskMotion(
             score.problem, score.task, score.worlds[End.START], without_lines, jobs
         )
-        plan = _first_plan(score, motion, found, seed, rng, attempts, report or _ignore)
-        if plan is not None or not _lines_in_the_way(score.task, attempts):
+        plan = _first_plan(
+            score, motion, found, numbers, seed, rng, failed, report or _ignore
+        )
+        numbers = [n for n in numbers if _line_in_the_way(score.task, failed.get(n))]
+        if plan is not None or not numbers:
             break
-    return plan, tuple(attempts)
+    return plan, tuple(attempt for _, attempt in sorted(failed.items()))
 
 
 def _first_plan(
     score: ScoreFunction,
     motion: TaskMotion,
     found: Optimization,
+    numbers: Sequence[int],
     seed: int,
     rng: np.random.Generator,
-    attempts: list[Attempt],
+    failed: dict[int, Attempt],
     report: Progress,
 ) -> Plan | None:
-    """The first verified plan; what candidates before it fail at joins `attempts`."""
+    """The first verified plan of some of the candidates, by their numbers.
+
+    `failed` is told of those before that fail, and forgets the one that does not.
+    """
     together = score.problem.planner.goals
-    for first in range(0, len(found.candidates), together):
-        report("planning", first, len(found.candidates))
-        triples = found.candidates[first : first + together]
+    for first in range(0, len(numbers), together):
+        report("planning", first, len(numbers))
+        group = numbers[first : first + together]
+        triples = [found.candidates[n] for n in group]
         candidates = [Candidate.of_triple(triple, score) for triple in triples]
         for k, planned in motion.plan_together(candidates, rng):
             plan: Plan | Blocked
@@ -150,8 +160,9 @@ def _first_plan(
             else:
                 plan = _verified(score, candidates[k], planned, seed)
             if isinstance(plan, Plan):
+                failed.pop(group[k], None)
                 return plan
-            attempts.append(Attempt(triples[k].total, plan))
+            failed[group[k]] = Attempt(triples[k].total, plan)
     return None
 
 
@@ -171,9 +182,11 @@ def _verified(
     return Blocked("verification", str(verification.faults[0]))
 
 
-def _lines_in_the_way(task: Task, attempts: list[Attempt]) -> bool:
+def _line_in_the_way(task: Task, attempt: Attempt | None) -> bool:
     """Whether a straight motion that the scene leaves open stopped a candidate."""
-    return any(getattr(task, a.blocked.segment, 0.0) is None for a in attempts)
+    if attempt is None:
+        return False
+    return getattr(task, attempt.blocked.segment, 0.0) is None
 
 
 def _optimize(

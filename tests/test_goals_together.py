@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 
@@ -119,3 +120,36 @@ def test_all_that_cannot_be_reached_are_accounted_for() -> None:
     assert caught.value.report.reason == (
         "all 4 candidates failed on the way: transit (4)"
     )
+
+
+@pytest.mark.parametrize("goals", [1, 3])
+def test_only_lines_that_were_in_the_way_are_left_out(
+    goals: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Who fails at a straight line has a second chance, others have none."""
+    score, search = optimized()
+    tried: list[tuple[bool, tuple[float, ...]]] = []
+    ends = ["approach", "lift", "transfer"]
+    grasps = [tuple(triple.grasp) for triple in search.candidates]
+
+    def failing(
+        self: TaskMotion, candidates: list[Candidate], _: np.random.Generator
+    ) -> Iterator[tuple[int, Blocked]]:
+        for k, candidate in reversed(list(enumerate(candidates))):
+            grasp = tuple(candidate.triple.grasp)
+            tried.append((self.without_lines, grasp))
+            again = " again" if self.without_lines else ""
+            yield k, Blocked(ends[grasps.index(grasp)], f"no{again}")
+
+    monkeypatch.setattr(TaskMotion, "plan_together", failing)
+    task = replace(score.task, lift=0.1)  # on which the scene insists
+    planner = replace(score.problem.planner, goals=goals)
+    problem = replace(score.problem, tasks=(task,), planner=planner)
+    asked = pipeline.score_function(problem)
+    some = replace(search, candidates=search.candidates[:3])
+    plan, attempts = pipeline.plan_candidates(asked, some, 0, np.random.default_rng(0))
+    assert plan is None
+    assert [a.blocked.segment for a in attempts] == ends
+    assert [a.blocked.message for a in attempts] == ["no again", "no", "no"]
+    assert sorted(tried[:3]) == sorted((False, grasp) for grasp in grasps[:3])
+    assert tried[3:] == [(True, grasps[0])]
