@@ -87,7 +87,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--families", type=_names, default=[])
     parser.add_argument("--planners", type=_names, default=["RRTConnect"])
     parser.add_argument("--resolution", type=float, metavar="M", help="of mmplan's")
-    parser.add_argument("--range", type=float, metavar="M", help="of mmplan's")
+    parser.add_argument(
+        "--range", type=float, default=0.4, metavar="M", help="of mmplan's"
+    )
     parser.add_argument("--motion-check", choices=("sampled", "continuous"))
     parser.add_argument("--peers", type=_peers, default=["naive"])
     parser.add_argument(

@@ -120,6 +120,11 @@ class OptimizerSettings:
     mutation: float = 0.2
 
 
+# Longest edges of a planner's trees, m: a few long ones lead through the open, short
+# ones out of a shelf. Their number is odd, as planners extend two trees in turn.
+RANGES = (1.5, 0.4, 0.1)
+
+
 @dataclass(frozen=True)
 class PlannerSettings:
     """Which planner and how far it may go before it gives up.
@@ -129,7 +134,8 @@ class PlannerSettings:
     the one that it reaches first comes first), so that one seed gives one plan;
     `time_limit` (CPU s, for one path) is the safety net. `resolution` (m) is the
     longest way that any point of the robot moves between two collision checks; a
-    `continuous` motion check finds what touches between these as well.
+    `continuous` motion check finds what touches between these as well. `range` (m) is
+    the longest edge of the planner's trees, by default one of `RANGES` in turn.
     Paths keep `clearance` (m) from all that their ends are not nearer to already.
     `shortcuts` is the number of attempts at shortening a path, and `shorten` (CPU s)
     the safety net for that. `base_weight` is how much more a way of the base counts in
@@ -138,7 +144,7 @@ class PlannerSettings:
     """
 
     name: str = "RRTConnect"
-    iterations: int = 3_000
+    iterations: int = 5_000
     candidates: int = 10
     goals: int = 1
     time_limit: float = 10.0
@@ -148,7 +154,7 @@ class PlannerSettings:
     shorten: float = 10.0
     base_weight: float = 1.0
     torque: bool = False
-    range: float = 1.5
+    range: float | None = None
     motion_check: Literal["sampled", "continuous"] = "sampled"
 
 

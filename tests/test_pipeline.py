@@ -49,6 +49,14 @@ def both_tasks() -> Plan:
     return mmplan.solve(two_tasks(), seed=0)
 
 
+def test_edges_of_several_lengths_lead_out_of_a_crowded_shelf() -> None:
+    problem = mmplan.load_problem(Path(__file__).parent / "scenes/crowded_shelf.yaml")
+    assert mmplan.verify(mmplan.solve(problem, seed=4), problem).ok
+    long = replace(problem.planner, range=1.5, candidates=1)
+    error = failure(replace(problem, planner=long), seed=4)
+    assert "failed on the way: transfer (1)" in str(error)
+
+
 @pytest.mark.parametrize("name", ["wineglass", "plate"])
 def test_the_shipped_scenes_are_solved(name: str) -> None:
     problem = mmplan.load_problem(name)
@@ -158,9 +166,9 @@ def test_a_family_that_cannot_work_is_left_aside() -> None:
     assert plan.tasks[0].grasp == "side"
 
 
-def failure(problem: Problem) -> NoPlanError:
+def failure(problem: Problem, seed: int = 0) -> NoPlanError:
     with pytest.raises(NoPlanError) as caught:
-        mmplan.solve(problem, seed=0)
+        mmplan.solve(problem, seed=seed)
     return caught.value
 
 

@@ -84,8 +84,9 @@ def _add_settings(run: argparse.ArgumentParser) -> None:
     run.add_argument(
         "--range",
         type=above_zero,
+        default=0.4,
         metavar="M",
-        help="the longest edge of the planner; default: that of scenes",
+        help="the longest edge of the planner; default: 0.4",
     )
     run.add_argument(
         "--motion-check",

@@ -179,7 +179,9 @@ def _search(
         planner = make_planner(replace(settings, name=_PLANNER), si)
         planner.setProblemDefinition(problem)
         planner.setup()
-        planner.solve(ob.PlannerTerminationCondition(Budget(settings, problem)))
+        budget = Budget(settings, problem, planner)
+        planner.solve(ob.PlannerTerminationCondition(budget))
+        budget.release()
         if not problem.hasExactSolution():
             return None
         return [_pose(state) for state in problem.getSolutionPath().getStates()]

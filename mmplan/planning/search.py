@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ from mmplan.planning.metric import Metric
 from mmplan.planning.planners import make_planner
 from mmplan.planning.roadmap import search_roadmap
 from mmplan.planning.state_space import ScaledStates, space_information
-from mmplan.problem import PlannerSettings
+from mmplan.problem import RANGES, PlannerSettings
 from mmplan.shapes import Array
 
 # States nearer to each other than this are one, m.
@@ -33,22 +33,36 @@ class Budget:
 
     Planners that could go on improving a path stop at the first: it is shortened
     anyway, and going on would be bounded by the clock sooner than by the counts.
+
+    Where the settings leave the range open, it is another one in each iteration.
     """
 
     def __init__(
-        self, settings: PlannerSettings, problem: ob.ProblemDefinition
+        self,
+        settings: PlannerSettings,
+        problem: ob.ProblemDefinition,
+        planner: ob.Planner,
     ) -> None:
         """Allow the settings' iterations and, as a safety net, their time limit."""
+        self._set_range: Callable[[float], None] | None = None
+        if settings.range is None:
+            self._set_range = getattr(planner, "setRange", None)
         self._allowed = settings.iterations
         self._deadline = planning_clock() + settings.time_limit
         self._problem = problem
         self.iterations = 0
         self.out_of_time = False
 
+    def release(self) -> None:
+        """Let go of the planner: some keep their budget, and are never freed then."""
+        self._set_range = None
+
     def __call__(self) -> bool:
         """Whether the planner must stop."""
         if self.iterations >= self._allowed or self._problem.hasExactSolution():
             return True
+        if self._set_range is not None:
+            self._set_range(RANGES[self.iterations % len(RANGES)])
         if self.iterations % _UNTIMED == 0:
             self.out_of_time = planning_clock() > self._deadline
         self.iterations += not self.out_of_time
@@ -95,12 +109,13 @@ def search(
         planner = make_planner(settings, si)
         planner.setProblemDefinition(problem)
         planner.setup()
-        budget = Budget(settings, problem)
+        budget = Budget(settings, problem, planner)
         if isinstance(planner, og.PRM):
             way = search_roadmap(planner, si, states, budget, len(q_goals))
         else:
             planner.solve(ob.PlannerTerminationCondition(budget))
             way = _solution(problem, states)
+        budget.release()
         gap, start_tree, goal_tree = 0.0, 0, 0
         if way is None:
             gap, start_tree, goal_tree = _how_far(planner, si, states, ends)

@@ -20,7 +20,7 @@ from mmplan.planning.joints import MovingJoints
 from mmplan.planning.metric import Metric
 from mmplan.planning.search import SAME_STATE, Search
 from mmplan.planning.upright import UprightRule
-from mmplan.problem import PlannerSettings
+from mmplan.problem import RANGES, PlannerSettings
 from mmplan.shapes import Array
 
 # How far apart the configurations are that are projected, m of weighted length.
@@ -94,14 +94,15 @@ class UprightSearch:
         """
         deadline = planning_clock() + settings.time_limit
         trees = Tree(q_start[None]), Tree(q_goals)
+        longest = settings.range or max(RANGES)
         samples = self._samples(q_start)
         iterations, late, way = 0, False, None
         while way is None and iterations < settings.iterations and not late:
             one, other = trees if iterations % 2 == 0 else trees[::-1]
             iterations += 1
-            node = self._grow(one, next(samples), settings.range, settings.range)
+            node = self._grow(one, next(samples), longest, longest)
             if node is not None:
-                meeting = self._grow(other, one.q[node], np.inf, settings.range)
+                meeting = self._grow(other, one.q[node], np.inf, longest)
                 way = self._joined(trees, one, node, meeting)
             late = planning_clock() > deadline
         q = trees[0].q

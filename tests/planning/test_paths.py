@@ -12,9 +12,9 @@ from mmplan.planning import (
     transfer_joints,
     transit_joints,
 )
-from mmplan.planning.search import Search
+from mmplan.planning.search import Budget, Search
 from mmplan.planning.shortening import path_length, shorten
-from mmplan.problem import PlannerSettings
+from mmplan.problem import RANGES, PlannerSettings
 
 RESOLUTION = 0.02
 SETTINGS = PlannerSettings(iterations=3000, resolution=RESOLUTION, shortcuts=30)
@@ -241,3 +241,24 @@ def test_no_shortcut_is_tried_when_the_time_for_it_is_over(gap, stick_joints):
     none = shorten(path, checker, stick_joints, 0, np.random.default_rng(1))
     late = shorten(path, checker, stick_joints, 10**9, np.random.default_rng(1), 0.0)
     assert np.array_equal(none, late)
+
+
+class Unsolved:
+    """A problem without a solution, and a planner that notes its ranges."""
+
+    def __init__(self):
+        self.ranges = []
+
+    def hasExactSolution(self):
+        return False
+
+    def setRange(self, longest):
+        self.ranges.append(longest)
+
+
+@pytest.mark.parametrize("given", [None, 0.3])
+def test_lengths_of_edges_take_turns_unless_one_is_given(given):
+    unsolved = Unsolved()
+    budget = Budget(PlannerSettings(iterations=6, range=given), unsolved, unsolved)
+    assert [budget() for _ in range(7)] == [False] * 6 + [True]
+    assert unsolved.ranges == ([] if given else [*RANGES, *RANGES])
