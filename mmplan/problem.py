@@ -157,6 +157,11 @@ class PlannerSettings:
     range: float | None = None
     motion_check: Literal["sampled", "continuous"] = "sampled"
 
+    @property
+    def longest_edge(self) -> float:
+        """The longest edge that the planner's trees ever have, m."""
+        return max(RANGES) if self.range is None else self.range
+
 
 @dataclass(frozen=True, eq=False)
 class Problem:

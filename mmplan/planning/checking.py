@@ -65,17 +65,20 @@ class PathChecker:
             return None
         return int(np.argmax(self.world.in_collision(q)))
 
-    def edge_free(self, q_from: Array, q_to: Array, *, likely: bool = False) -> bool:
+    def edge_free(
+        self, q_from: Array, q_to: Array, *, likely_free: bool = False
+    ) -> bool:
         """Whether an edge is free of collision, its first end taken as checked.
 
-        If that is likely, as where a coarser checker found it free, it is told sooner.
+        If it is `likely_free`, as where a coarser checker found it so, that is told
+        sooner.
         """
         dq = q_to - q_from
         self.edges += 1
         if self._moving is not None and self.continuous:
             if self._moving is not self.world and not self._steps_free(q_from, dq):
                 return False
-            return not self._moving.motion_collides(q_from, dq, likely_free=likely)
+            return not self._moving.motion_collides(q_from, dq, likely_free=likely_free)
         return self._steps_free(q_from, dq)
 
     def _steps_free(self, q: Array, dq: Array) -> bool:

@@ -60,7 +60,7 @@ class PathFinder:
         parts = [path[:1]]
         for i, (q_from, q_to) in enumerate(pairwise(path), start=1):
             around: Array | None = path[i - 1 : i + 1]
-            if not checker.edge_free(q_from, q_to, likely=True):
+            if not checker.edge_free(q_from, q_to, likely_free=True):
                 _, around = soon._look(checker, q_from, q_to[None])
             if around is None:
                 return None

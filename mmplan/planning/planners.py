@@ -9,7 +9,7 @@ from ompl import geometric as og
 
 from mmplan.exceptions import InputError
 from mmplan.files.suggestions import unknown
-from mmplan.problem import RANGES, PlannerSettings
+from mmplan.problem import PlannerSettings
 
 # BITstar never frees its space information after a search that finds nothing, which
 # the bindings then lament on stderr when the process ends.
@@ -53,7 +53,7 @@ def require_planner(name: str, *, circles: bool = False) -> None:
 
 
 def make_planner(settings: PlannerSettings, si: ob.SpaceInformation) -> ob.Planner:
-    """The planner that the settings name, its longest range set where it has one.
+    """The planner that the settings name, its longest edge set where it has one.
 
     Raises:
         InputError: if there is none of that name.
@@ -61,5 +61,5 @@ def make_planner(settings: PlannerSettings, si: ob.SpaceInformation) -> ob.Plann
     require_planner(settings.name)
     planner = getattr(og, settings.name)(si)
     if hasattr(planner, "setRange"):
-        planner.setRange(settings.range or max(RANGES))
+        planner.setRange(settings.longest_edge)
     return planner

@@ -20,7 +20,7 @@ from mmplan.planning.joints import MovingJoints
 from mmplan.planning.metric import Metric
 from mmplan.planning.search import SAME_STATE, Search
 from mmplan.planning.upright import UprightRule
-from mmplan.problem import RANGES, PlannerSettings
+from mmplan.problem import PlannerSettings
 from mmplan.shapes import Array
 
 # How far apart the configurations are that are projected, m of weighted length.
@@ -94,7 +94,7 @@ class UprightSearch:
         """
         deadline = planning_clock() + settings.time_limit
         trees = Tree(q_start[None]), Tree(q_goals)
-        longest = settings.range or max(RANGES)
+        longest = settings.longest_edge
         samples = self._samples(q_start)
         iterations, late, way = 0, False, None
         while way is None and iterations < settings.iterations and not late:
@@ -178,8 +178,8 @@ class UprightSearch:
         if blocked is not None:
             path = path[: blocked[0] + 1]
         if self._checker.continuous:
-            edges = pairwise(path)
-            free = [self._checker.edge_free(*edge, likely=True) for edge in edges]
+            edge_free = self._checker.edge_free
+            free = [edge_free(*edge, likely_free=True) for edge in pairwise(path)]
             path = path[: free.index(False) + 1] if False in free else path
         return path[1:]
 

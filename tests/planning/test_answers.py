@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from itertools import pairwise
 
@@ -84,6 +85,26 @@ def test_edges_are_free_or_not_in_both_ways(name: str) -> None:
     assert np.array_equal(
         np.subtract(done[0], before[0]), np.subtract(done[1], before[1])
     )
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_much_is_settled_without_coal(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    quick, _, states = asked(name)
+    quick.state_free(states[0])  # ready from then on
+    compiled = quick._quick
+    assert isinstance(compiled, CompiledSpace)
+    judge, left = compiled._judge, list[int]()
+
+    def counted(finds: list[tuple[int, int]], place: Callable[[int], Array]) -> bool:
+        left.append(len(finds))
+        return judge(finds, place)
+
+    monkeypatch.setattr(compiled, "_judge", counted)
+    for state in states:
+        quick.state_free(state)
+    assert 0 < len(left) < 0.9 * STATES
 
 
 def test_edges_go_the_short_way_round() -> None:
