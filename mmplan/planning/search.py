@@ -19,6 +19,7 @@ from mmplan.planning.metric import Metric
 from mmplan.planning.planners import make_planner
 from mmplan.planning.roadmap import search_roadmap
 from mmplan.planning.state_space import ScaledStates, space_information
+from mmplan.planning.turns import Turns
 from mmplan.problem import RANGES, PlannerSettings
 from mmplan.shapes import Array
 
@@ -35,6 +36,7 @@ class Budget:
     anyway, and going on would be bounded by the clock sooner than by the counts.
 
     Where the settings leave the range open, it is another one in each iteration.
+    Turns that pass are none.
     """
 
     def __init__(
@@ -42,6 +44,7 @@ class Budget:
         settings: PlannerSettings,
         problem: ob.ProblemDefinition,
         planner: ob.Planner,
+        turns: Turns | None = None,
     ) -> None:
         """Allow the settings' iterations and, as a safety net, their time limit."""
         self._set_range: Callable[[float], None] | None = None
@@ -50,6 +53,7 @@ class Budget:
         self._allowed = settings.iterations
         self._deadline = planning_clock() + settings.time_limit
         self._problem = problem
+        self._turns = turns
         self.iterations = 0
         self.out_of_time = False
 
@@ -61,6 +65,10 @@ class Budget:
         """Whether the planner must stop."""
         if self.iterations >= self._allowed or self._problem.hasExactSolution():
             return True
+        if self._turns is not None:
+            self._turns.begin()
+            if self._turns.passes:
+                return False
         if self._set_range is not None:
             self._set_range(RANGES[self.iterations % len(RANGES)])
         if self.iterations % _UNTIMED == 0:
@@ -104,12 +112,13 @@ def search(
         metric = Metric.of_joints(joints, checker.sweep.weights)
         states = ScaledStates(q_start, joints, metric)
         ends = np.vstack([q_start, q_goals])
-        si = space_information(states, ends, checker)
+        turns = Turns() if settings.name == "RRTConnect" else None
+        si = space_information(states, ends, checker, turns)
         problem = _problem(si, states, ends)
         planner = make_planner(settings, si)
         planner.setProblemDefinition(problem)
         planner.setup()
-        budget = Budget(settings, problem, planner)
+        budget = Budget(settings, problem, planner, turns)
         if isinstance(planner, og.PRM):
             way = search_roadmap(planner, si, states, budget, len(q_goals))
         else:

@@ -17,6 +17,7 @@ from mmplan.collision import PlannerSpace
 from mmplan.planning.checking import PathChecker
 from mmplan.planning.joints import MovingJoints
 from mmplan.planning.metric import Metric
+from mmplan.planning.turns import Turns
 from mmplan.planning.world import QuickAnswers
 from mmplan.shapes import Array
 
@@ -179,26 +180,40 @@ class WorldValidity(ob.StateValidityChecker):
 class WorldMotions(ob.MotionValidator):
     """Whether a whole edge is free of collision, in one call."""
 
-    def __init__(self, si: ob.SpaceInformation, answers: Answers) -> None:
-        """Pass OMPL's questions on."""
+    def __init__(
+        self, si: ob.SpaceInformation, answers: Answers, turns: Turns | None
+    ) -> None:
+        """Pass OMPL's questions on, but those of turns that pass."""
         super().__init__(si)
         self.answers = answers
+        self._turns = turns
 
     def checkMotion(self, start: ob.State, end: ob.State) -> bool:
         """OMPL's question; it takes the start as checked."""
-        return self.answers.edge_free(start, end)
+        turns = self._turns
+        if turns is None:
+            return self.answers.edge_free(start, end)
+        if turns.passes:
+            return False
+        free = self.answers.edge_free(start, end)
+        turns.note(free=free)
+        return free
 
 
 def space_information(
-    states: ScaledStates, ends: Array, checker: PathChecker
+    states: ScaledStates,
+    ends: Array,
+    checker: PathChecker,
+    turns: Turns | None = None,
 ) -> ob.SpaceInformation:
     """The space within the joint limits with its checks, ready to plan in.
 
-    The ends (n, nq) of the wanted path are always inside.
+    The ends (n, nq) of the wanted path are always inside. `turns` are those of
+    RRTConnect.
     """
     si = ob.SpaceInformation(states.space(ends))
     answers = Answers(states, checker)
     si.setStateValidityChecker(WorldValidity(si, answers))
-    si.setMotionValidator(WorldMotions(si, answers))
+    si.setMotionValidator(WorldMotions(si, answers, turns))
     si.setup()
     return si

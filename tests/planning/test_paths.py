@@ -1,3 +1,4 @@
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -12,8 +13,9 @@ from mmplan.planning import (
     transfer_joints,
     transit_joints,
 )
-from mmplan.planning.search import Budget, Search
+from mmplan.planning.search import Budget, Search, search
 from mmplan.planning.shortening import path_length, shorten
+from mmplan.planning.turns import Turns
 from mmplan.problem import RANGES, PlannerSettings
 
 RESOLUTION = 0.02
@@ -262,3 +264,42 @@ def test_lengths_of_edges_take_turns_unless_one_is_given(given):
     budget = Budget(PlannerSettings(iterations=6, range=given), unsolved, unsolved)
     assert [budget() for _ in range(7)] == [False] * 6 + [True]
     assert unsolved.ranges == ([] if given else [*RANGES, *RANGES])
+
+
+@pytest.fixture
+def trees_in_turn(monkeypatch):
+    """The turns of every search, in the order of their beginning."""
+    begun = []
+
+    class Noted(Turns):
+        def __init__(self):
+            super().__init__()
+            begun.append(self)
+
+    monkeypatch.setattr("mmplan.planning.search.Turns", Noted)
+    return begun
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_smaller_tree_is_extended(stick_among, stick_joints, trees_in_turn, seed):
+    world = stick_among(**CELL)
+    checker = PathChecker(world, RESOLUTION)
+    settings = replace(SETTINGS, iterations=300)
+    found = search(checker, LEFT, RIGHT[None], stick_joints, settings, seed)
+    assert found.waypoints is None
+    assert found.iterations == 300
+    (turns,) = trees_in_turn
+    assert turns.sizes == [found.start_tree, found.goal_tree]
+    assert abs(found.start_tree - found.goal_tree) < 10
+
+
+def test_turns_that_pass_are_no_iterations():
+    turns, unsolved = Turns(), Unsolved()
+    budget = Budget(PlannerSettings(iterations=3), unsolved, unsolved, turns)
+    passed = []
+    while not budget():
+        passed.append(turns.passes)
+        if not turns.passes:
+            turns.note(free=len(passed) == 1)
+    assert passed == [False, False, True, False]
+    assert budget.iterations == 3
