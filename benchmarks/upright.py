@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from unittest.mock import patch
 
 import numpy as np
 import pinocchio as pin
@@ -20,12 +21,12 @@ from ompl import base as ob
 from ompl import geometric as og
 
 import mmplan
-from mmplan.planning import PathChecker, paths
+from mmplan.planning import PathChecker
 from mmplan.planning.joints import MovingJoints
 from mmplan.planning.metric import Metric
+from mmplan.planning.path_finder import PathFinder
 from mmplan.planning.search import Search, own_randomness
 from mmplan.planning.upright import UprightRule, UprightWorld
-from mmplan.problem import PlannerSettings
 from mmplan.shapes import Array
 
 DELTA = 0.05  # m of weighted length between two projected states
@@ -138,35 +139,30 @@ def main() -> None:
     options = parser.parse_args()
     print("| scene | seed | mmplan CPU s | found | ProjectedStateSpace CPU s | found |")
     print("|---|---|---|---|---|---|")
-    search, row = paths._search, ""
+    search, row = PathFinder._search, ""
 
     def both(
-        checker: PathChecker,
-        q_start: Array,
-        q_goals: Array,
-        joints: MovingJoints,
-        settings: PlannerSettings,
-        seed: int,
+        finder: PathFinder, checker: PathChecker, q_start: Array, q_goals: Array
     ) -> Search:
         begin = time.process_time()
-        found = search(checker, q_start, q_goals, joints, settings, seed)
+        found = search(finder, checker, q_start, q_goals)
         own = time.process_time() - begin
         if isinstance(checker.world, UprightWorld):
             ends = np.vstack([q_start, q_goals])
-            with own_randomness(seed):
+            with own_randomness(finder.seed):
                 other, there = by_projected_space(
-                    checker, checker.world.rule, ends, joints, options.limit
+                    checker, checker.world.rule, ends, finder.joints, options.limit
                 )
             here = found.waypoints is not None
             print(f"{row} {own:.2f} | {here} | {other:.2f} | {there} |", flush=True)
         return found
 
-    paths._search = both
-    for scene in options.scenes:
-        problem = mmplan.load_problem(scene)
-        for seed in range(options.seeds):
-            row = f"| {scene} | {seed} |"
-            mmplan.solve(problem, seed=seed)
+    with patch.object(PathFinder, "_search", both):
+        for scene in options.scenes:
+            problem = mmplan.load_problem(scene)
+            for seed in range(options.seeds):
+                row = f"| {scene} | {seed} |"
+                mmplan.solve(problem, seed=seed)
 
 
 if __name__ == "__main__":

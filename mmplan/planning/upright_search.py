@@ -3,8 +3,8 @@
 Two trees that grow towards each other (RRT-Connect; J. Kuffner and S. LaValle, ICRA
 2000), and all that is added to them is projected to where the rule holds, as in CBiRRT:
 D. Berenson, S. Srinivasa, D. Ferguson and J. Kuffner, "Manipulation planning on
-constraint manifolds", ICRA 2009. OMPL's planners know nothing of the rule: few of their
-straight edges would keep it.
+constraint manifolds", ICRA 2009. The smaller one has the turn, as with `Turns`. OMPL's
+planners know nothing of the rule: few of their straight edges would keep it.
 """
 
 from __future__ import annotations
@@ -99,6 +99,8 @@ class UprightSearch:
         iterations, late, way = 0, False, None
         while way is None and iterations < settings.iterations and not late:
             one, other = trees if iterations % 2 == 0 else trees[::-1]
+            if one.size > other.size:
+                one, other = other, one
             iterations += 1
             node = self._grow(one, next(samples), longest, longest)
             if node is not None:
