@@ -17,6 +17,7 @@ import argparse
 import os
 import time
 from collections.abc import Callable
+from contextlib import closing
 from functools import cache
 from pathlib import Path
 from typing import TypeAlias
@@ -26,6 +27,7 @@ import numpy as np
 import mmplan
 from mmplan.candidate import Candidate
 from mmplan.collision import CollisionWorld, compile_motions
+from mmplan.exceptions import NoPlanError
 from mmplan.motion import Blocked, TaskMotion
 from mmplan.optimizers import Optimization, optimize
 from mmplan.pipeline import optimizer_of, score_function, task_generators
@@ -146,17 +148,21 @@ def _motion(problem: Problem, seed: int, jobs: int) -> Run:
     candidates = _candidates(problem, seed)
     begin = time.perf_counter()
     outcomes = []
-    for candidate in candidates:
-        outcomes.append(motion.plan(candidate, rng))
-        if not isinstance(outcomes[-1], Blocked):
-            break
+    with closing(motion.plan_in_turn(candidates, rng)) as found:
+        for _, outcome in found:
+            outcomes.append(outcome)
+            if not isinstance(outcome, Blocked):
+                break
     seconds = time.perf_counter() - begin
     return seconds, [row for outcome in outcomes for row in _bytes(outcome)]
 
 
 def _solve(problem: Problem, seed: int, jobs: int) -> Run:
     begin = time.perf_counter()
-    plan = mmplan.solve(problem, seed=seed, jobs=jobs)
+    try:
+        plan = mmplan.solve(problem, seed=seed, jobs=jobs)
+    except NoPlanError as error:
+        return time.perf_counter() - begin, [str(error).encode()]
     seconds = time.perf_counter() - begin
     return seconds, [row for task in plan.tasks for row in _bytes(task.segments)]
 

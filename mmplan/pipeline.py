@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from dataclasses import replace
+from functools import cache
 from typing import Protocol
 
 import numpy as np
@@ -13,7 +15,7 @@ from mmplan.collision import CollisionWorld
 from mmplan.exceptions import NoPlanError, VerificationError
 from mmplan.failure import Attempt, failure_report
 from mmplan.grasps import GraspFamily, Mixture
-from mmplan.motion import Blocked, TaskMotion
+from mmplan.motion import Blocked, Outcome, TaskMotion
 from mmplan.optimizers import (
     OPTIMIZERS,
     Optimization,
@@ -147,23 +149,38 @@ def _first_plan(
 
     `failed` is told of those before that fail, and forgets the one that does not.
     """
-    together = score.problem.planner.goals
-    for first in range(0, len(numbers), together):
-        report("planning", first, len(numbers))
-        group = numbers[first : first + together]
-        triples = [found.candidates[n] for n in group]
-        candidates = [Candidate.of_triple(triple, score) for triple in triples]
-        for k, planned in motion.plan_together(candidates, rng):
+    made = cache(lambda k: Candidate.of_triple(found.candidates[numbers[k]], score))
+    report("planning", 0, len(numbers))
+    with closing(_outcomes(motion, made, len(numbers), rng)) as outcomes:
+        for done, (k, planned) in enumerate(outcomes, start=1):
             plan: Plan | Blocked
             if isinstance(planned, Blocked):
                 plan = planned
             else:
-                plan = _verified(score, candidates[k], planned, seed)
+                plan = _verified(score, made(k), planned, seed)
             if isinstance(plan, Plan):
-                failed.pop(group[k], None)
+                failed.pop(numbers[k], None)
                 return plan
-            failed[group[k]] = Attempt(triples[k].total, plan)
+            failed[numbers[k]] = Attempt(made(k).triple.total, plan)
+            report("planning", done, len(numbers))
     return None
+
+
+def _outcomes(
+    motion: TaskMotion,
+    made: Callable[[int], Candidate],
+    count: int,
+    rng: np.random.Generator,
+) -> Generator[tuple[int, Outcome]]:
+    """The number of each candidate that is made, and what is planned for it."""
+    together = motion.problem.planner.goals
+    if together == 1:
+        yield from motion.plan_in_turn(map(made, range(count)), rng)
+        return
+    for first in range(0, count, together):
+        group = range(first, min(first + together, count))
+        for k, outcome in motion.plan_together([made(k) for k in group], rng):
+            yield group[k], outcome
 
 
 def _verified(

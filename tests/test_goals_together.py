@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import cache
 
@@ -133,7 +133,7 @@ def test_only_lines_that_were_in_the_way_are_left_out(
     grasps = [tuple(triple.grasp) for triple in search.candidates]
 
     def failing(
-        self: TaskMotion, candidates: list[Candidate], _: np.random.Generator
+        self: TaskMotion, candidates: Iterable[Candidate], _: np.random.Generator
     ) -> Iterator[tuple[int, Blocked]]:
         for k, candidate in reversed(list(enumerate(candidates))):
             grasp = tuple(candidate.triple.grasp)
@@ -142,6 +142,7 @@ def test_only_lines_that_were_in_the_way_are_left_out(
             yield k, Blocked(ends[grasps.index(grasp)], f"no{again}")
 
     monkeypatch.setattr(TaskMotion, "plan_together", failing)
+    monkeypatch.setattr(TaskMotion, "plan_in_turn", failing)
     task = replace(score.task, lift=0.1)  # on which the scene insists
     planner = replace(score.problem.planner, goals=goals)
     problem = replace(score.problem, tasks=(task,), planner=planner)

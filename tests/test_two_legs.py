@@ -1,4 +1,4 @@
-"""Both legs of a candidate planned at once come to what they come to one by one."""
+"""Legs and candidates planned at once come to what they come to one by one."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import multiprocessing
 import os
 import signal
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping
 from dataclasses import replace
 from functools import cache
 from typing import TypeAlias
@@ -18,15 +18,12 @@ from mmplan import pipeline
 from mmplan.candidate import Candidate
 from mmplan.collision import CollisionWorld
 from mmplan.exceptions import MmplanError
-from mmplan.motion import Blocked, TaskMotion
+from mmplan.motion import Blocked, Outcome, TaskMotion
 from mmplan.motion.connections import Connection, Connector
 from mmplan.motion.parts import BlockedError, Part
-from mmplan.plan import Segment
 from mmplan.scoring import End, ScoreFunction
 from mmplan.shapes import Array
 from tests.tabletop import cup_problem, walled_in
-
-Outcome: TypeAlias = tuple[Segment, ...] | Blocked
 
 pytestmark = pytest.mark.skipif(
     "fork" not in multiprocessing.get_all_start_methods(),
@@ -46,11 +43,14 @@ def optimized() -> tuple[ScoreFunction, list[Candidate]]:
     return score, [Candidate.of_triple(triple, score) for triple in triples]
 
 
+def motion(jobs: int) -> TaskMotion:
+    score, _ = optimized()
+    return TaskMotion(score.problem, score.task, score.worlds[End.START], True, jobs)
+
+
 def planned(jobs: int, number: int = 0, seed: int = 1) -> Outcome:
-    score, candidates = optimized()
-    world = score.worlds[End.START]
-    motion = TaskMotion(score.problem, score.task, world, True, jobs)
-    outcome = motion.plan(candidates[number], np.random.default_rng(seed))
+    _, candidates = optimized()
+    outcome = motion(jobs).plan(candidates[number], np.random.default_rng(seed))
     assert not multiprocessing.active_children()
     return outcome
 
@@ -242,3 +242,45 @@ def test_an_interrupt_leaves_nothing_behind(
         planned(2)
     assert not multiprocessing.active_children()
     assert capfd.readouterr() == ("", "")
+
+
+def in_turn(jobs: int) -> Generator[tuple[int, Outcome]]:
+    _, candidates = optimized()
+    return motion(jobs).plan_in_turn(candidates, np.random.default_rng(1))
+
+
+def test_candidates_planned_at_once_come_to_the_same() -> None:
+    one, two = (list(in_turn(jobs)) for jobs in (1, 2))
+    assert [number for number, _ in one] == list(range(CANDIDATES))
+    assert [(k, bits(outcome)) for k, outcome in one] == [
+        (k, bits(outcome)) for k, outcome in two
+    ]
+    assert not multiprocessing.active_children()
+
+
+def test_the_other_process_plans_the_next_but_one(
+    before: Callable[..., None],
+) -> None:
+    def fail(rng: np.random.Generator) -> None:  # noqa: ARG001
+        there = multiprocessing.parent_process() is not None
+        raise BlockedError("transit", "there" if there else "here")
+
+    before(transit=fail, transfer=sleep)
+    told = {jobs: [x.message for _, x in in_turn(jobs)] for jobs in (1, 2)}
+    assert told == {1: ["here", "here", "here"], 2: ["here", "here", "there"]}
+
+
+def test_nobody_waits_for_a_candidate_that_is_not_needed(
+    before: Callable[..., None],
+) -> None:
+    def fail(rng: np.random.Generator) -> None:
+        if multiprocessing.parent_process() is not None:
+            sleep(rng)
+        raise BlockedError(WALLED.segment, WALLED.message)
+
+    before(transit=fail)
+    outcomes = in_turn(2)
+    assert [next(outcomes), next(outcomes)] == [(0, WALLED), (1, WALLED)]
+    assert multiprocessing.active_children()
+    outcomes.close()
+    assert not multiprocessing.active_children()

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
-from typing import NamedTuple
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from itertools import islice
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -23,6 +24,9 @@ from mmplan.problem import Problem, Task
 from mmplan.processes import Copy, copied
 from mmplan.shapes import Array
 
+# The timed segments of a motion, or what stood in its way.
+Outcome: TypeAlias = tuple[Segment, ...] | Blocked
+
 
 class _Halves(NamedTuple):
     """What is known of a candidate before any way is looked for."""
@@ -37,19 +41,11 @@ class _Ahead(NamedTuple):
     """The second half from a configuration on, being planned by another process."""
 
     q_lifted: Array  # (nq,)
-    answer: Callable[[], tuple[Segment, ...] | Blocked]
+    answer: Callable[[], Outcome]
 
     def begins_at(self, q: Array) -> bool:
         """Whether it begins at a configuration (nq,), to the last bit."""
         return bool(self.q_lifted.tobytes() == q.tobytes())
-
-    def segments(self) -> tuple[Segment, ...] | Blocked:
-        """What has come of it, once that is known; arrays are read-only again."""
-        outcome = self.answer()
-        for segment in () if isinstance(outcome, Blocked) else outcome:
-            for array in (segment.times, segment.positions, segment.velocities):
-                array.setflags(write=False)
-        return outcome
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +53,8 @@ class TaskMotion:
     """Plans the motion of one task for candidates, one by one or together.
 
     With two `jobs` another process plans the second half of a candidate's motion, from
-    the transfer on, while this one plans the first. What comes of it is the same.
+    the transfer on, while this one plans the first; once a candidate has failed, the
+    one after the next, while this one plans the next. What comes of it is the same.
     """
 
     problem: Problem
@@ -66,9 +63,7 @@ class TaskMotion:
     without_lines: bool = False  # whether straight motions may be left out
     jobs: int = 1
 
-    def plan(
-        self, candidate: Candidate, rng: np.random.Generator
-    ) -> tuple[Segment, ...] | Blocked:
+    def plan(self, candidate: Candidate, rng: np.random.Generator) -> Outcome:
         """The segments of the whole motion, or what stood in its way."""
         delivery = self._delivery(candidate)
         with copied(delivery, self.jobs, "plans the transfer") as copy:
@@ -78,9 +73,24 @@ class TaskMotion:
                 return error.blocked
             return self._next({0: halves}, rng)[0]
 
+    def plan_in_turn(
+        self, candidates: Iterable[Candidate], rng: np.random.Generator
+    ) -> Generator[tuple[int, Outcome]]:
+        """The number of each candidate and what `plan` says of it.
+
+        Each has random numbers of its own. Close it when no more are wanted.
+        """
+        todo = ((k, x, rng.spawn(1)[0]) for k, x in enumerate(candidates))
+        for k, x, own in islice(todo, 1):
+            yield k, self.plan(x, own)
+        alone = replace(self, jobs=1)
+        while two := list(islice(todo, 2)):
+            plans = {k: partial(alone.plan, x, own) for k, x, own in two}
+            yield from _at_once(plans, self.jobs)
+
     def plan_together(
         self, candidates: Sequence[Candidate], rng: np.random.Generator
-    ) -> Iterator[tuple[int, tuple[Segment, ...] | Blocked]]:
+    ) -> Iterator[tuple[int, Outcome]]:
         """The number of each candidate and what `plan` says of it, once that is known.
 
         Transits to all candidates are one search with many goals, where what is in the
@@ -114,7 +124,7 @@ class TaskMotion:
 
     def _next(
         self, ready: Mapping[int, _Halves], rng: np.random.Generator
-    ) -> Mapping[int, tuple[Segment, ...] | Blocked]:
+    ) -> Mapping[int, Outcome]:
         """What comes of the candidate reached first, or of all that are not reached.
 
         Either way has random numbers of its own, so that they can be looked for at the
@@ -137,7 +147,7 @@ class TaskMotion:
             return {number: error.blocked}
         q_lifted, lifted = pick[-1].path[-1], pick[-1].moves
         if ahead is not None and number == first and ahead.begins_at(q_lifted):
-            rest = ahead.segments()
+            rest = _fetched(ahead.answer)
         else:
             rest = ready[number].delivery.segments(q_lifted, lifted, for_transfer)
         return {number: rest if isinstance(rest, Blocked) else fetched + rest}
@@ -198,3 +208,29 @@ class TaskMotion:
     @cached_property
     def _timing(self) -> Timing:
         return Timing(self.problem, self.task, self.world)
+
+
+def _at_once(
+    plans: Mapping[int, Callable[[], Outcome]], jobs: int
+) -> Iterator[tuple[int, Outcome]]:
+    """What comes of one or two plans, with two jobs of both at the same time."""
+    *before, last = plans
+    jobs = min(jobs, len(plans))
+    with copied(plans[last], jobs, "plans another candidate") as copy:
+        answer = plans[last] if copy is None else partial(_fetched, copy.ask(_called))
+        for number in before:
+            yield number, plans[number]()
+        yield last, answer()
+
+
+def _called(plan: Callable[[], Outcome]) -> Outcome:
+    return plan()
+
+
+def _fetched(answer: Callable[[], Outcome]) -> Outcome:
+    """What has come of it in another process; arrays are read-only again."""
+    outcome = answer()
+    for segment in () if isinstance(outcome, Blocked) else outcome:
+        for array in (segment.times, segment.positions, segment.velocities):
+            array.setflags(write=False)
+    return outcome
