@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import islice
@@ -80,13 +81,13 @@ class TaskMotion:
 
         Each has random numbers of its own. Close it when no more are wanted.
         """
-        todo = ((k, x, rng.spawn(1)[0]) for k, x in enumerate(candidates))
-        for k, x, own in islice(todo, 1):
-            yield k, self.plan(x, own)
+        todo = ((x, rng.spawn(1)[0]) for x in candidates)
+        for candidate, own in islice(todo, 1):
+            yield 0, self.plan(candidate, own)
         alone = replace(self, jobs=1)
-        while two := list(islice(todo, 2)):
-            plans = {k: partial(alone.plan, x, own) for k, x, own in two}
-            yield from _at_once(plans, self.jobs)
+        plans = [partial(alone.plan, *each) for each in todo]
+        with closing(_in_pairs(plans, self.jobs)) as outcomes:
+            yield from enumerate(outcomes, start=1)
 
     def plan_together(
         self, candidates: Sequence[Candidate], rng: np.random.Generator
@@ -210,21 +211,20 @@ class TaskMotion:
         return Timing(self.problem, self.task, self.world)
 
 
-def _at_once(
-    plans: Mapping[int, Callable[[], Outcome]], jobs: int
-) -> Iterator[tuple[int, Outcome]]:
-    """What comes of one or two plans, with two jobs of both at the same time."""
-    *before, last = plans
+def _in_pairs(plans: Sequence[Callable[[], Outcome]], jobs: int) -> Generator[Outcome]:
+    """What comes of plans; with two jobs another process makes every second one."""
     jobs = min(jobs, len(plans))
-    with copied(plans[last], jobs, "plans another candidate") as copy:
-        answer = plans[last] if copy is None else partial(_fetched, copy.ask(_called))
-        for number in before:
-            yield number, plans[number]()
-        yield last, answer()
+    with copied(plans, jobs, "plans every second candidate") as copy:
+        for k in range(0, len(plans), 2):
+            pair = [*plans[k : k + 2]]
+            if copy is not None and len(pair) == 2:
+                pair[1] = partial(_fetched, copy.ask(_made, k + 1))
+            for plan in pair:
+                yield plan()
 
 
-def _called(plan: Callable[[], Outcome]) -> Outcome:
-    return plan()
+def _made(plans: Sequence[Callable[[], Outcome]], k: int) -> Outcome:
+    return plans[k]()
 
 
 def _fetched(answer: Callable[[], Outcome]) -> Outcome:
