@@ -90,7 +90,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--range", type=float, default=0.4, metavar="M", help="of mmplan's"
     )
-    parser.add_argument("--motion-check", choices=("sampled", "continuous"))
+    checks = ("sampled", "continuous")
+    parser.add_argument("--motion-check", choices=checks, default=checks[1])
     parser.add_argument("--peers", type=_peers, default=["naive"])
     parser.add_argument(
         "--peer-python",

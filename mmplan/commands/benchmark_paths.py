@@ -91,7 +91,8 @@ def _add_settings(run: argparse.ArgumentParser) -> None:
     run.add_argument(
         "--motion-check",
         choices=("sampled", "continuous"),
-        help="how edges are checked; default: that of scenes",
+        default="continuous",
+        help="how edges are checked; default: continuous",
     )
     run.add_argument(
         "--resolution",
