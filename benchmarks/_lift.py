@@ -54,7 +54,8 @@ def lift(item: Object, robot: Robot, T_object_tool: Array, opened: Array) -> Dri
 
 def place(data: mujoco.MjData) -> Array:
     """Where the object's centre of mass is, seen from the hand, (3,)."""
-    return data.body("thing").xipos - data.body("hand").xpos
+    from_hand: Array = data.body("thing").xipos - data.body("hand").xpos
+    return from_hand
 
 
 def scene(
@@ -65,14 +66,14 @@ def scene(
     hand = opened[None]
     palm = fingers.placed(T_object_tool[None], hand, HandRoom(robot).palm)
     closing = T_object_tool[:3, 1]
-    parts = []
+    parts: list[str] = []
     for sign, drive in zip((-1.0, 1.0), fingers.drives, strict=True):
         finger = next(iter(drive.fingers.values()))
         axis = " ".join(map(str, sign * closing))
-        geoms = boxes(fingers.placed(T_object_tool[None], hand, finger))
+        shapes = boxes(fingers.placed(T_object_tool[None], hand, finger))
         parts.append(
             f'<body><joint name="f{len(parts)}" type="slide" axis="{axis}" '
-            f'damping="20"/>{geoms}<inertial pos="0 0 0" mass="0.05" '
+            f'damping="20"/>{shapes}<inertial pos="0 0 0" mass="0.05" '
             'diaginertia="1e-4 1e-4 1e-4"/></body>'
         )
     meshes, geoms = [], []
@@ -81,6 +82,7 @@ def scene(
         meshes.append(f'<mesh name="m{i}" vertex="{points}"/>')
         geoms.append(f'<geom type="mesh" mesh="m{i}" contype="2" conaffinity="1"/>')
     centre = " ".join(map(str, closer.centre_of_mass))
+    assert item.mass is not None
     inertia = 0.4 * item.mass * (0.6 * closer.size) ** 2
     friction = f"{item.friction} {item.friction * TORSION_ARM} 0.0001"
     return f"""

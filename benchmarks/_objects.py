@@ -54,11 +54,6 @@ def tube(path: np.ndarray, radii: np.ndarray, sides: int) -> trimesh.Trimesh:
     return mesh
 
 
-def together(*parts: trimesh.Trimesh) -> trimesh.Trimesh:
-    """Several closed surfaces as one mesh."""
-    return trimesh.util.concatenate(parts)
-
-
 def arc(
     centre: Sequence[float], radius: float, begin: float, end: float, n: int
 ) -> np.ndarray:
@@ -81,7 +76,7 @@ def mug(fine: int = 1) -> trimesh.Trimesh:
         fine,
     )
     path = arc((0.038, 0.048), 0.03, -85, 85, 14 * fine)
-    return together(body, tube(path, np.full(14 * fine, 0.0055), 10 * fine))
+    return body + tube(path, np.full(14 * fine, 0.0055), 10 * fine)
 
 
 def bottle(fine: int = 1) -> trimesh.Trimesh:
@@ -102,10 +97,8 @@ def pan(fine: int = 1) -> trimesh.Trimesh:
     """A pan with a long handle towards +x."""
     outline = [(0, 0), (0.09, 0), (0.1, 0.045), (0.096, 0.045), (0.087, 0.004)]
     grip = np.linspace([0.094, 0, 0.035], [0.26, 0, 0.055], 14 * fine)
-    return together(
-        turned([*outline, (0, 0.004)], fine),
-        tube(grip, np.full(len(grip), 0.011), 10 * fine),
-    )
+    body = turned([*outline, (0, 0.004)], fine)
+    return body + tube(grip, np.full(len(grip), 0.011), 10 * fine)
 
 
 def spray_can(fine: int = 1) -> trimesh.Trimesh:
@@ -116,7 +109,7 @@ def spray_can(fine: int = 1) -> trimesh.Trimesh:
 
 def box(fine: int = 1) -> trimesh.Trimesh:
     """A box of tea."""
-    mesh = trimesh.creation.box((0.15, 0.07, 0.09))
+    mesh: trimesh.Trimesh = trimesh.creation.box((0.15, 0.07, 0.09))
     for _ in range(fine):
         mesh = mesh.subdivide()
     return mesh
@@ -151,10 +144,8 @@ def hammer(fine: int = 1) -> trimesh.Trimesh:
     """A head across the end of a handle."""
     handle = np.linspace([0.0, 0, 0.0], [0.0, 0, 0.25], 12 * fine)
     head = np.linspace([-0.05, 0, 0.25], [0.05, 0, 0.25], 6 * fine)
-    return together(
-        tube(handle, np.full(len(handle), 0.013), 10 * fine),
-        tube(head, np.full(len(head), 0.02), 10 * fine),
-    )
+    grip = tube(handle, np.full(len(handle), 0.013), 10 * fine)
+    return grip + tube(head, np.full(len(head), 0.02), 10 * fine)
 
 
 OBJECTS: dict[str, Callable[[int], trimesh.Trimesh]] = {

@@ -134,8 +134,8 @@ class _Clutter:
         joint, middle = self._middles[link]
         base = robot.model.getJointId(robot.base.names[-1])
         centre = data.oMi[base].act(robot.model.inertias[base].lever)
-        distance = np.linalg.norm(data.oMi[joint].act(middle) - centre)
-        return float(1.0 / max(distance, robot.base_radius))
+        distance = float(np.linalg.norm(data.oMi[joint].act(middle) - centre))
+        return 1.0 / max(distance, robot.base_radius)
 
     def _middle(self, link: str) -> tuple[int, Array]:
         """The joint that moves a link, and the middle of its bodies in its frame."""

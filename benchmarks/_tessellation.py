@@ -5,8 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
-from mmplan.shapes import Box, Capsule, Cylinder, Shape, Sphere
+from mmplan.collision.mesh_files import TriangleMesh
+from mmplan.shapes import Array, Box, Capsule, Cylinder, Shape, Sphere
 
 # Slices of a turn, before triangles are split.
 _SLICES, _FINE_SLICES = 32, 240
@@ -14,7 +16,7 @@ _SLICES, _FINE_SLICES = 32, 240
 _STEP = 0.002
 
 
-def surface_of(shape: Shape) -> np.ndarray:
+def surface_of(shape: Shape | TriangleMesh) -> Array:
     """The triangles (t, 3, 3) of a primitive, counter-clockwise from outside."""
     match shape:
         case Box(size):
@@ -30,15 +32,15 @@ def surface_of(shape: Shape) -> np.ndarray:
     raise TypeError(f"no surface for {shape}")
 
 
-def turned(outline: np.ndarray, ripple: float | None = None) -> np.ndarray:
-    """The triangles of an outline of (r, z) turned about z.
+def turned(profile: npt.ArrayLike, ripple: float | None = None) -> Array:
+    """The triangles of an outline (n, 2) of (r, z) turned about z.
 
     It goes counter-clockwise about the material, from the axis to the axis or, where
     it stays off that, back to where it began. With a `ripple` the surface is fine from
     the beginning, and has ripples pressed into it, so many m deep at most.
     """
-    outline = np.array(outline, dtype=np.float64)
-    closed = outline[0, 0] > 0.0
+    outline = np.array(profile, dtype=np.float64)
+    closed = bool(outline[0, 0] > 0.0)
     slices = _SLICES if ripple is None else _FINE_SLICES
     if ripple is not None:
         outline = _stepped(outline, closed)
@@ -58,10 +60,11 @@ def turned(outline: np.ndarray, ripple: float | None = None) -> np.ndarray:
     triangles = np.concatenate([one, two])
     a, b, c = (triangles[:, i] for i in range(3))
     proper = (a != b).any(axis=1) & (b != c).any(axis=1) & (c != a).any(axis=1)
-    return triangles[proper]
+    found: Array = triangles[proper]
+    return found
 
 
-def refined(surfaces: list[np.ndarray], count: int) -> list[np.ndarray]:
+def refined(surfaces: list[Array], count: int) -> list[Array]:
     """The surfaces with about so many triangles together, all about as large.
 
     Triangles are split into four, those of the surface with the largest ones first.
@@ -76,7 +79,7 @@ def refined(surfaces: list[np.ndarray], count: int) -> list[np.ndarray]:
     return surfaces
 
 
-def write_stl(path: Path, triangles: np.ndarray) -> None:
+def write_stl(path: Path, triangles: Array) -> None:
     """Write a binary STL file."""
     kind = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
     records = np.zeros(len(triangles), kind)
@@ -85,27 +88,28 @@ def write_stl(path: Path, triangles: np.ndarray) -> None:
     path.write_bytes(head + records.tobytes())
 
 
-def _areas(triangles: np.ndarray) -> np.ndarray:
+def _areas(triangles: Array) -> Array:
     a, b, c = (triangles[:, i] for i in range(3))
-    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    doubled: Array = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    return doubled / 2
 
 
-def _split(triangles: np.ndarray) -> np.ndarray:
+def _split(triangles: Array) -> Array:
     a, b, c = (triangles[:, i] for i in range(3))
     ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
     parts = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
     return np.concatenate([np.stack(part, axis=1) for part in parts])
 
 
-def _box(size: np.ndarray) -> np.ndarray:
-    corners = size * (np.indices((2, 2, 2)).reshape(3, -1).T - 0.5)
+def _box(size: Array) -> Array:
+    corners: Array = size * (np.indices((2, 2, 2)).reshape(3, -1).T - 0.5)
     sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4)]
     sides.append((1, 5, 7, 3))
     faces = [t for a, b, c, d in sides for t in ((a, b, c), (a, c, d))]
-    return corners[np.array(faces)]
+    return corners[np.array(faces, np.int64)]
 
 
-def _stepped(outline: np.ndarray, closed: bool) -> np.ndarray:
+def _stepped(outline: Array, closed: bool) -> Array:
     """An outline with more points between its own."""
     following = np.roll(outline, -1, axis=0)
     pairs = list(zip(outline, following, strict=True))
@@ -116,7 +120,9 @@ def _stepped(outline: np.ndarray, closed: bool) -> np.ndarray:
     return np.array(points if closed else [*points, outline[-1]])
 
 
-def _arc(radius: float, z: float, start: float, end: float) -> list:
+def _arc(
+    radius: float, z: float, start: float, end: float
+) -> list[tuple[float, float]]:
     angles = np.linspace(start, end, _SLICES // 4)
     r = np.where(np.abs(angles) == np.pi / 2, 0.0, radius * np.cos(angles))
     return list(zip(r, z + radius * np.sin(angles), strict=True))

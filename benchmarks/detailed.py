@@ -19,6 +19,7 @@ import shutil
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,17 +31,18 @@ import mmplan
 from mmplan.assets import find_scene
 from mmplan.collision import Scenery, solids_of_obstacle
 from mmplan.collision.surfaces import appearance
+from mmplan.shapes import Array
 
 _SCENES, _TRIANGLES = ["wineglass", "plate", "dishes"], [300_000, 3_000_000]
 # The dishes on the counter of `dishes`: outlines, and where they stand along it.
 _TURN = 2 * np.pi * np.arange(16) / 16
-_DISHES = {
+_DISHES: dict[str, tuple[Sequence[Sequence[float]], float]] = {
     "bowl": (
         [(0, 0), (0.05, 0), (0.11, 0.06), (0.106, 0.063), (0.048, 0.005), (0, 0.005)],
         -0.2,
     ),
     "ring": (
-        np.stack([0.06 + 0.03 * np.cos(_TURN), 0.031 + 0.03 * np.sin(_TURN)], 1),
+        [(0.06 + 0.03 * np.cos(a), 0.031 + 0.03 * np.sin(a)) for a in _TURN],
         -0.7,
     ),
     "mug": (
@@ -95,7 +97,7 @@ def _compare(name: str, options: argparse.Namespace, folder: Path) -> None:
         half = float(np.median(times[count]))
         ratio = np.median(np.array(times[count]) / times[0])
         print(
-            f"| {name} | {count or 'primitives':,} | {_bodies(scene)} | "
+            f"| {name} | {count:,} | {_bodies(scene)} | "
             f"{prepared[count]:.1f} | {again[count]:.2f} | "
             f"{solved[count]} of {options.seeds} | {half:.2f} | {ratio:.2f} |"
             if count
@@ -144,7 +146,7 @@ def primitive_scene(name: str, folder: Path) -> Path:
 def detailed_scene(source: Path, count: int, objects: bool) -> Path:
     """The scene with meshes of `count` triangles together for all its obstacles."""
     data = yaml.safe_load(source.read_text())
-    surfaces: dict[str, tuple[dict[str, Any], list[np.ndarray]]] = {}
+    surfaces: dict[str, tuple[dict[str, Any], list[Array]]] = {}
     for obstacle in mmplan.load_problem(source).obstacles:
         entry = data["obstacles"].pop(obstacle.name)
         kept = {key: entry[key] for key in ("at", "ground") if key in entry}
@@ -171,7 +173,7 @@ def detailed_scene(source: Path, count: int, objects: bool) -> Path:
 
 
 def _write_meshes(
-    surfaces: dict[str, tuple[dict[str, Any], list[np.ndarray]]],
+    surfaces: dict[str, tuple[dict[str, Any], list[Array]]],
     count: int,
     folder: Path,
 ) -> None:

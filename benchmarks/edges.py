@@ -13,8 +13,10 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, TypeAlias
+from unittest.mock import patch
 
 import numpy as np
 from ompl import base as ob
@@ -56,15 +58,16 @@ class Recorder:
                 self.states.append(q[0 : asked.answers.states._size])
             return valid(asked, q)
 
-        motion.checkMotion, state.isValid = check_motion, is_valid  # type: ignore[method-assign, assignment]
-        self._undo = lambda: (
-            setattr(motion, "checkMotion", check),
-            setattr(state, "isValid", valid),
-        )
+        self._listening = ExitStack()
+        for patched in (
+            patch.object(motion, "checkMotion", check_motion),
+            patch.object(state, "isValid", is_valid),
+        ):
+            self._listening.enter_context(patched)
 
     def stop(self) -> None:
         """Let the classes be as they were."""
-        self._undo()
+        self._listening.close()
 
 
 def main() -> None:

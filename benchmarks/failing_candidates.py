@@ -26,7 +26,7 @@ class Watch:
         self.seconds = 0.0
         self._begin: float | None = None
 
-    def __call__(self, what: str, *_: int | None) -> None:
+    def __call__(self, what: str, done: int, of: int | None) -> None:  # noqa: ARG002
         """A stage of `mmplan.solve` begins."""
         now = time.process_time()
         planning = what == "planning"

@@ -33,9 +33,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from mmplan.grasp_build import default_grasps
-from mmplan.grasps import Axis, CylinderSide
+from mmplan.grasps import Axis, CylinderSide, GraspFamily
 from mmplan.optimizers import OPTIMIZERS, optimize, search_space
 from mmplan.pipeline import score_function
 from mmplan.problem import Problem
@@ -52,7 +53,7 @@ def figure1_problem() -> Problem:
     """The shipped wineglass with the two grasps of Figure 1."""
     problem = load_problem("wineglass")
     (glass,) = problem.objects
-    grasps = {
+    grasps: dict[str, GraspFamily] = {
         "bowl": CylinderSide(along=(0.13, 0.205), tilt=0.5),
         "stem": Axis(along=(0.02, 0.09)),
     }
@@ -121,7 +122,7 @@ def by_optimizer(
 
 def draw(
     score: ScoreFunction, n: int, ends: tuple[End, ...], rng: np.random.Generator
-) -> tuple[Array, Array]:
+) -> tuple[Array, npt.NDArray[np.bool_]]:
     """Grasps (n, g), and which of them work at all ends for some base, (n,)."""
     space = search_space(score)
     grasps = space.grasps.sample(n, rng)

@@ -76,7 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         problem = load_problem(scene)
         coupling = measure(problem, options.grasps, options.bases, options.seed)
         start, goal = coupling.start.any(axis=1), coupling.goal.any(axis=1)
-        shares = [np.mean(s) for s in (*coupling, start, goal, start & goal)]
+        shares = [float(np.mean(s)) for s in (*coupling, start, goal, start & goal)]
         shares.append(coupling.fails_at_goal)
         print(f"{problem.name:12}", *(f"{100 * share:7.1f} %" for share in shares))
 

@@ -22,7 +22,7 @@ import json
 import os
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -136,7 +136,7 @@ def _obstacles(seeds: int) -> Iterator[Point]:
     for count in _OBSTACLES:
         crowded = replace(problem, obstacles=(*problem.obstacles, *boxes[:count]))
         name = f"{len(crowded.obstacles)} obstacles"
-        yield _measured(len(crowded.obstacles), name, lambda c=crowded: c, seeds)
+        yield _measured(len(crowded.obstacles), name, crowded, seeds)
 
 
 def _boxes(count: int) -> Iterator[Obstacle]:
@@ -164,8 +164,7 @@ def _triangles(seeds: int) -> Iterator[Point]:
         for count in _TRIANGLES:
             scene = detailed_scene(primitive, count, objects=False)
             title = f"{count:,} triangles, prepared in {loading(scene):.1f} s"
-            load = lambda scene=scene: mmplan.load_problem(scene)  # noqa: E731
-            yield _measured(count, title, load, seeds)
+            yield _measured(count, title, scene, seeds)
 
 
 def _populations(seeds: int) -> Iterator[Point]:
@@ -180,7 +179,7 @@ def _populations(seeds: int) -> Iterator[Point]:
         )
         title = f"2 × {settings.bases} bases, {settings.grasps} grasps"
         larger = replace(problem, optimizer=settings)
-        yield _measured(factor, title, lambda c=larger: c, seeds)
+        yield _measured(factor, title, larger, seeds)
 
 
 def _joints(seeds: int) -> Iterator[Point]:
@@ -193,25 +192,25 @@ def _joints(seeds: int) -> Iterator[Point]:
                 if problem is not None:
                     points.append((_joint_count(problem), f"{robot}, {base}", problem))
         for count, name, problem in sorted(points, key=lambda p: p[:2]):
-            title = f"{count}: {name}"
-            yield _measured(count, title, lambda p=problem: p, seeds)
+            yield _measured(count, f"{count}: {name}", problem, seeds)
 
 
-def _measured(size: float, name: str, load: Callable[[], Problem], seeds: int) -> Point:
-    return Point(size, name, [_cost(load, seed) for seed in range(seeds)])
+def _measured(size: float, name: str, scene: Problem | Path, seeds: int) -> Point:
+    return Point(size, name, [_cost(scene, seed) for seed in range(seeds)])
 
 
-def _cost(load: Callable[[], Problem], seed: int) -> Cost:
+def _cost(scene: Problem | Path, seed: int) -> Cost:
     """Load and solve once; the search is over when the first other stage is told of."""
     begin = time.process_time()
     ended = [begin]
 
-    def progress(what: str, *_: int | None) -> None:
+    def progress(what: str, done: int, of: int | None) -> None:  # noqa: ARG001
         if what == "optimization":
             ended[0] = time.process_time()
 
     try:
-        mmplan.solve(load(), seed=seed, progress=progress)
+        problem = mmplan.load_problem(scene) if isinstance(scene, Path) else scene
+        mmplan.solve(problem, seed=seed, progress=progress)
         solved = True
     except mmplan.NoPlanError:
         solved = False

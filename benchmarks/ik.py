@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from _wheel_arms import ARMS, Arm, load_arm
 
 from mmplan.assets import ROBOT_FILE, example_robots, robot_names, robots_folder
@@ -79,7 +80,7 @@ def _timed(
 
 
 def _mean(
-    solutions: Sequence[Solutions], of_pose: Callable[[Solutions], np.ndarray]
+    solutions: Sequence[Solutions], of_pose: Callable[[Solutions], npt.ArrayLike]
 ) -> float:
     return float(np.concatenate([of_pose(s) for s in solutions]).mean())
 

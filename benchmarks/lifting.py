@@ -34,7 +34,7 @@ from _lift import lift
 from _objects import OBJECTS
 from scipy.stats import rankdata, spearmanr
 
-from mmplan.collision import HandCloser, Scenery
+from mmplan.collision import Closings, HandCloser, Scenery
 from mmplan.collision.fingers import Fingers, ObjectSolids
 from mmplan.collision.hand_room import HandRoom
 from mmplan.grasp_values import sampled
@@ -70,7 +70,7 @@ def trials(item: Object, robot: Robot, n: int, rng: np.random.Generator) -> Tria
     for i, (pose, opened) in enumerate(zip(T, closings.opened, strict=True)):
         facts = {"friction": rng.choice(FRICTIONS), "mass": rng.choice(MASSES)}
         known = replace(item, **facts)
-        one = type(closings)(*(part[i : i + 1] for part in closings))
+        one = Closings(opened[None], closings.closed[[i]], closings.touches[[i]])
         hold = Hold(np.zeros((1, 0)), pose[None], one)
         (quality,) = measure(known, robot, closer)(hold)
         drift = lift(known, robot, pose, opened)
@@ -111,7 +111,7 @@ def measure(item: Object, robot: Robot, closer: HandCloser) -> WrenchQuality:
 
 def deciles(found: Trials) -> npt.NDArray[np.int64]:
     """The decile of each grasp by quality, 0 the worst; equal ones in one, (n,)."""
-    rank = rankdata(found.quality, "average")
+    rank: Array = rankdata(found.quality, "average")
     return np.minimum(9, (10.0 * (rank - 0.5) / len(rank)).astype(np.int64))
 
 

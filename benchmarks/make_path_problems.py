@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from mmplan.benchmarking.paths.arena import Arena, Contestant, contestant, make_arena
 from mmplan.benchmarking.paths.problems import PathProblem, load_path_problems
@@ -140,11 +141,13 @@ def _ends(
     return None
 
 
-def _reaching(arena: Arena, family: str, q: Array) -> Array:
+def _reaching(arena: Arena, family: str, q: Array) -> npt.NDArray[np.bool_]:
     """Which configurations (n, nq) have the tool in its region, pointing along x."""
     middle, half = REGIONS[family]
     T_world_tool = np.array([arena.world.robot.tool_pose(each) for each in q])
-    inside = np.all(np.abs(T_world_tool[:, :3, 3] - middle) < half, axis=1)
+    inside: npt.NDArray[np.bool_] = np.all(
+        np.abs(T_world_tool[:, :3, 3] - middle) < half, axis=1
+    )
     ahead = T_world_tool[:, 0, 2] > (0.7 if family == "shelf" else -1.0)
     return inside & ahead
 

@@ -125,12 +125,13 @@ def _assignment(text: str) -> tuple[str, str]:
 
 
 def _peer(name: str, python: str, folder: Path, stack: ExitStack) -> Competitor:
-    common = {"step": STEP, "reach": REACH, "time_limit": TIME_LIMIT}
-    if name == "naive":
-        return Competitor(name, partial(naive.prepare, **common), common)
-    process = Process(name, python, folder)
-    stack.callback(process.end)
-    return Competitor(name, partial(process.prepare, **common), common)
+    settings = {"step": STEP, "reach": REACH, "time_limit": TIME_LIMIT}
+    prepare = naive.prepare
+    if name != "naive":
+        process = Process(name, python, folder)
+        stack.callback(process.end)
+        prepare = process.prepare
+    return Competitor(name, lambda arena: prepare(arena, **settings), settings)
 
 
 if __name__ == "__main__":

@@ -66,7 +66,7 @@ def _run(scene: str, seed: int) -> Run | None:
     problem = mmplan.load_problem(scene)
     searched: list[float] = []
 
-    def note(what: str, *_: object) -> None:
+    def note(what: str, done: int, of: int | None) -> None:  # noqa: ARG001
         if what == "optimization":
             searched[:] = [time.process_time()]
 

@@ -64,7 +64,7 @@ def _run(problem: Problem, longest: float | None, seed: int) -> Run:
     planner = replace(problem.planner, range=longest)
     begun: list[str] = []
 
-    def note(what: str, *_: int | None) -> None:
+    def note(what: str, done: int, of: int | None) -> None:  # noqa: ARG001
         begun.append(what)
 
     begin = time.process_time()

@@ -90,6 +90,7 @@ def _viewer(folder: Path) -> Cost:
         stderr=subprocess.DEVNULL,
         text=True,
     )
+    assert process.stdout is not None
     url = process.stdout.readline().strip()
     urllib.request.urlopen(url, timeout=60).read()
     wall = time.perf_counter() - begin
