@@ -25,7 +25,7 @@ from mmplan.benchmarking.paths.arena import Arena, contestant, make_arena
 from mmplan.benchmarking.paths.planning import own_planner
 from mmplan.benchmarking.paths.problems import load_path_problems
 from mmplan.collision import kernels
-from mmplan.planning import state_space
+from mmplan.planning.state_space import Answers
 from mmplan.problem import PlannerSettings
 
 PROBLEMS = Path(__file__).parent / "data" / "panda_motionbenchmaker.json.gz"
@@ -34,36 +34,33 @@ ROUNDS = 5
 
 
 class Recorder:
-    """Keeps the states that OMPL asks about, and who answers."""
+    """Keeps the states that OMPL asks about, and who answers for the first search."""
 
     def __init__(self) -> None:
-        """Listen to the two classes that OMPL asks."""
+        """Listen to those who answer."""
         self.motions: list[tuple[list[float], list[float]]] = []
         self.states: list[list[float]] = []
-        self.motion_checker: Any = None
-        self.state_checker: Any = None
-        motion, state = state_space.WorldMotions, state_space.WorldValidity
-        check, valid = motion.checkMotion, state.isValid
+        self.answers: Any = None
+        edge_free, state_free = Answers.edge_free, Answers.state_free
 
-        def check_motion(asked: Any, start: ob.State, end: ob.State) -> bool:
-            if self.motion_checker in (None, asked):  # of the first search alone
-                self.motion_checker = asked
-                n = asked.answers.states._size
+        def on_edge(asked: Answers, start: ob.State, end: ob.State) -> bool:
+            if self._listens_to(asked):
+                n = asked.states._size
                 self.motions.append((start[0:n], end[0:n]))
-            return check(asked, start, end)
+            return edge_free(asked, start, end)
 
-        def is_valid(asked: Any, q: ob.State) -> bool:
-            if self.state_checker in (None, asked):
-                self.state_checker = asked
-                self.states.append(q[0 : asked.answers.states._size])
-            return valid(asked, q)
+        def on_state(asked: Answers, state: ob.State) -> bool:
+            if self._listens_to(asked):
+                self.states.append(state[0 : asked.states._size])
+            return state_free(asked, state)
 
         self._listening = ExitStack()
-        for patched in (
-            patch.object(motion, "checkMotion", check_motion),
-            patch.object(state, "isValid", is_valid),
-        ):
-            self._listening.enter_context(patched)
+        for name, listening in (("edge_free", on_edge), ("state_free", on_state)):
+            self._listening.enter_context(patch.object(Answers, name, listening))
+
+    def _listens_to(self, asked: Answers) -> bool:
+        self.answers = self.answers or asked
+        return self.answers is asked
 
     def stop(self) -> None:
         """Let the classes be as they were."""
@@ -108,8 +105,8 @@ def edge_layers(asked: Recorder) -> list[Row]:
 
     Edges that compiled code settles, and those that are left to coal.
     """
-    checker = asked.motion_checker
-    states, quick = checker.answers.states, _quick(asked)
+    answers, quick = asked.answers, _quick(asked)
+    states = answers.states
     pairs = [(_filled(a), _filled(b)) for a, b in asked.motions]
     ends = [(states.coordinates(a) + states.coordinates(b),) for a, b in pairs]
     known = (quick._places, quick._rows, quick._followers, quick._resolution)
@@ -123,7 +120,7 @@ def edge_layers(asked: Recorder) -> list[Row]:
         (
             one,
             len(settled),
-            *_layer("OMPL's question", checker.checkMotion, pairs, settled),
+            *_layer("OMPL's question", answers.edge_free, pairs, settled),
         ),
         (
             one,
@@ -134,7 +131,7 @@ def edge_layers(asked: Recorder) -> list[Row]:
         (
             other,
             len(left),
-            *_layer("OMPL's question", checker.checkMotion, pairs, left),
+            *_layer("OMPL's question", answers.edge_free, pairs, left),
         ),
         (other, len(left), *_layer("from coordinates on", quick.edge_free, ends, left)),
         (other, len(left), *_layer("compiled", kernels.check_edge, arrays, left)),
@@ -143,15 +140,14 @@ def edge_layers(asked: Recorder) -> list[Row]:
 
 def state_layers(asked: Recorder) -> list[Row]:
     """The same for single states, all of them."""
-    checker = asked.state_checker
-    quick = _quick(asked)
+    answers, quick = asked.answers, _quick(asked)
     states = [(_filled(values),) for values in asked.states]
-    points = [(checker.answers.states.coordinates(state),) for (state,) in states]
+    points = [(answers.states.coordinates(state),) for (state,) in states]
     known = (quick._places, quick._rows, quick._followers, quick._row)
     arrays = [(np.array(*p), *known, *quick._broadphase.known) for p in points]
     count = len(states)
     return [
-        ("state", count, "OMPL's question", _each(checker.isValid, states)),
+        ("state", count, "OMPL's question", _each(answers.state_free, states)),
         ("state", count, "from coordinates on", _each(quick.state_free, points)),
         ("state", count, "compiled", _each(kernels.check_state, arrays)),
     ]
@@ -159,9 +155,8 @@ def state_layers(asked: Recorder) -> list[Row]:
 
 def _quick(asked: Recorder) -> Any:
     """The compiled answers, which there are after the first question."""
-    answers = asked.motion_checker.answers
-    answers.state_free(_filled(asked.states[0]))
-    return answers._quick
+    asked.answers.state_free(_filled(asked.states[0]))
+    return asked.answers._quick
 
 
 def _layer(
