@@ -49,8 +49,8 @@ def solve(
     """Find grasps, base placements and a verified, timed motion for all tasks.
 
     The same problem, seed and machine give the same plan, whatever the number of
-    `jobs`: with two, both ends are scored and the ways to the object and to its goal
-    are looked for at the same time.
+    `jobs`: with two, both ends are scored at the same time, the ways to the object and
+    to its goal are looked for so and, once a candidate has failed, two others planned.
 
     Raises:
         NoPlanError: No plan was found; the error carries the account.
