@@ -193,10 +193,11 @@ def _exhausted(
         outcome = PathOutcome.TIME_LIMIT
     elif found.iterations >= settings.iterations:
         outcome = PathOutcome.ITERATIONS
+    tries = [f" in {n} tries" for n in found.tries] if found.tries else ["", ""]
     message = (
         f"{outcome.value} after {found.iterations} iterations and {checker.edges} "
-        f"edges: {found.start_tree} states connected to the start, "
-        f"{found.goal_tree} to the goal, {found.gap:.2f} m left to go"
+        f"edges: {found.start_tree} states connected to the start{tries[0]}, "
+        f"{found.goal_tree} to the goal{tries[1]}, {found.gap:.2f} m left to go"
     )
     return PathResult(
         outcome=outcome,

@@ -65,16 +65,18 @@ class Budget:
         """Whether the planner must stop."""
         if self.iterations >= self._allowed or self._problem.hasExactSolution():
             return True
+        if self.iterations % _UNTIMED == 0:
+            self.out_of_time = planning_clock() > self._deadline
+            if self.out_of_time:
+                return True
         if self._turns is not None:
             self._turns.begin()
             if self._turns.passes:
                 return False
         if self._set_range is not None:
             self._set_range(RANGES[self.iterations % len(RANGES)])
-        if self.iterations % _UNTIMED == 0:
-            self.out_of_time = planning_clock() > self._deadline
-        self.iterations += not self.out_of_time
-        return self.out_of_time
+        self.iterations += 1
+        return False
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +86,8 @@ class Search:
     `gap` (m, weighted by lever arms) is how far the states connected to the start stay
     from the nearest goal.
     `start_tree` and `goal_tree` are the numbers of states that the planner connected
-    to either end: a tree of one state tells that this end is hemmed in.
+    to either end, and `tries`, where known, those of its attempts to extend the two: an
+    end that took most of them is hemmed in.
     """
 
     waypoints: Array | None  # (n, nq)
@@ -93,6 +96,7 @@ class Search:
     gap: float
     start_tree: int
     goal_tree: int
+    tries: tuple[int, int] | None = None
 
 
 def search(
@@ -135,6 +139,7 @@ def search(
             gap=gap,
             start_tree=start_tree,
             goal_tree=goal_tree,
+            tries=(turns.taken[0], turns.taken[1]) if turns is not None else None,
         )
 
 

@@ -16,6 +16,7 @@ class Turns:
     def __init__(self) -> None:
         """Begin with one state in the start's tree and one in that of the goals."""
         self.sizes = [1, 1]
+        self.taken = [0, 0]
         self.passes = False
         self._turn = self._extended = 1
 
@@ -23,6 +24,7 @@ class Turns:
         """Begin the next turn; the start's tree has the first."""
         self._turn = self._extended = 1 - self._turn
         self.passes = self.sizes[self._turn] > self.sizes[1 - self._turn]
+        self.taken[self._turn] += not self.passes
 
     def note(self, *, free: bool) -> None:
         """Take note of a motion, which is added to a tree if it is free.

@@ -97,10 +97,12 @@ class UprightSearch:
         longest = settings.longest_edge
         samples = self._samples(q_start)
         iterations, late, way = 0, False, None
+        tries = [0, 0]
         while way is None and iterations < settings.iterations and not late:
             one, other = trees if iterations % 2 == 0 else trees[::-1]
             if one.size > other.size:
                 one, other = other, one
+            tries[one is trees[1]] += 1
             iterations += 1
             node = self._grow(one, next(samples), longest, longest)
             if node is not None:
@@ -109,7 +111,15 @@ class UprightSearch:
             late = planning_clock() > deadline
         q = trees[0].q
         gap = self.metric.distances(q[None], q_goals[:, None]).min()
-        return Search(way, iterations, late, float(gap), trees[0].size, trees[1].size)
+        return Search(
+            waypoints=way,
+            iterations=iterations,
+            out_of_time=late,
+            gap=float(gap),
+            start_tree=trees[0].size,
+            goal_tree=trees[1].size,
+            tries=(tries[0], tries[1]),
+        )
 
     def _joined(
         self, trees: tuple[Tree, Tree], one: Tree, node: int, meeting: int | None

@@ -1,3 +1,4 @@
+import re
 from dataclasses import replace
 from itertools import pairwise
 
@@ -135,7 +136,9 @@ def test_a_failed_search_says_how_far_it_got(stick_among, stick_joints):
     assert result.goal_tree > 0
     # No state outside of the cell is nearer to the goal than its walls.
     assert result.gap > 0.5
-    assert "left to go" in result.message
+    told = re.search(r" in (\d+) tries, .* in (\d+) tries, ", result.message)
+    assert sum(int(tries) for tries in told.groups()) == result.iterations
+    assert f"{result.gap:.2f} m left to go" in result.message
 
 
 @pytest.mark.parametrize("iterations", [1, 17, 400])
@@ -290,6 +293,7 @@ def test_the_smaller_tree_is_extended(stick_among, stick_joints, trees_in_turn, 
     assert found.iterations == 300
     (turns,) = trees_in_turn
     assert turns.sizes == [found.start_tree, found.goal_tree]
+    assert sum(found.tries) == found.iterations
     assert abs(found.start_tree - found.goal_tree) < 10
 
 
