@@ -27,10 +27,10 @@ class Watch:
         self._begin: float | None = None
 
     def __call__(self, what: str, done: int, of: int | None) -> None:  # noqa: ARG002
-        """A stage of `mmplan.solve` begins."""
+        """Take note of the progress of `mmplan.solve`; so many candidates are done."""
         now = time.process_time()
         planning = what == "planning"
-        if planning and self._begin is not None:
+        if planning and done > 0 and self._begin is not None:
             self.failed += 1
             self.seconds += now - self._begin
         self._begin = now if planning else None

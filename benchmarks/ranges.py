@@ -62,10 +62,11 @@ def main() -> None:
 
 def _run(problem: Problem, longest: float | None, seed: int) -> Run:
     planner = replace(problem.planner, range=longest)
-    begun: list[str] = []
+    begun: list[int] = []
 
-    def note(what: str, done: int, of: int | None) -> None:  # noqa: ARG001
-        begun.append(what)
+    def note(what: str, done: int, of: int | None) -> None:
+        if what == "planning" and done != of:
+            begun.append(done)
 
     begin = time.process_time()
     try:
@@ -74,7 +75,7 @@ def _run(problem: Problem, longest: float | None, seed: int) -> Run:
         plan = None
     seconds = time.process_time() - begin
     duration = plan.duration if plan is not None else 0.0
-    return Run(seconds, plan is not None, begun.count("planning"), duration)
+    return Run(seconds, plan is not None, len(begun), duration)
 
 
 def _row(longest: float | None, runs: list[Run]) -> str:
